@@ -1,0 +1,8 @@
+/// \file
+/// Wavefront OBJ, both ways.
+#ifndef TAFONI_IO_OBJ_HPP
+#define TAFONI_IO_OBJ_HPP
+
+#include <tafoni/io/read_obj.hpp>
+
+#endif
