@@ -12,10 +12,10 @@ namespace tafoni {
 /// Draws the direction in which the rain of one path travels.
 ///
 /// Laws: unit length; depends on the policy and the stream only.
-/// Model: `struct mine { vec3 direction(stream&) const { return {0, 0, -1}; } };`
+/// Model: `struct mine { vec3 draw(stream&) const { return {0, 0, -1}; } };`
 template <class R>
 concept rain_policy = std::copy_constructible<R> && requires(R const& r, stream& random) {
-    { r.direction(random) } -> std::same_as<vec3>;
+    { r.draw(random) } -> std::same_as<vec3>;
 };
 
 /// Share of the rain on a skin link that enters there; entry is drawn with weight area x acceptance.

@@ -29,6 +29,8 @@ concept absorption_rule =
     };
 
 /// Chance that a link drinks all that is left. Laws: pure; in [0, 1]; 0 for w.now == w.initial in the paper's rule.
+/// Optional member `double soaked_share(link_view const&) const` in [0, 1]: the part of it that wears the
+/// link (1 when absent); the remainder is lost.
 template <class R>
 concept soaking_rule = std::copy_constructible<R> && requires(R const& r, link_view const& l, water const& w) {
     { r.soak_chance(l, w) } -> std::same_as<double>;
