@@ -13,6 +13,15 @@
 
 namespace tafoni {
 
+/// The corners of a face's loop, in order: a span where they are stored, a small value where they are computed.
+template <class L>
+concept vertex_loop = requires(L const& loop, std::size_t k) {
+    { loop.size() } -> std::same_as<std::size_t>;
+    { static_cast<vertex_index>(loop[k]) };
+    loop.begin();
+    loop.end();
+};
+
 /// A conforming complex of cells, faces and shared vertices: shards, voxels, bricks, your own.
 ///
 /// Laws: every face lies between `front` and `back` = `face_cells(f)`; on the skin `back` is not
@@ -32,7 +41,7 @@ concept cell_complex = requires(C const& c, cell_index cell, face_index face, ve
     { c.face_count() } -> std::same_as<std::size_t>;
     { c.face_cells(face) } -> std::same_as<std::array<cell_index, 2>>;
     { c.loop_count(face) } -> std::same_as<std::size_t>;
-    { c.face_loop(face, loop) } -> std::same_as<std::span<vertex_index const>>;
+    { c.face_loop(face, loop) } -> vertex_loop;
     { c.face_patch(face) } -> std::same_as<patch_index>;
     { c.model_size() } -> std::same_as<double>;
 };

@@ -22,6 +22,16 @@ enum class link_state : std::uint8_t {
     gone,     ///< no side solid: no water runs here
 };
 
+/// One of the two parts that a broken link leaves.
+struct part {
+    std::int64_t volume = 0;       ///< fixed point, units of 2^-52 of the network's volume
+    std::size_t core_cells = 0;
+    cell_index lowest_cell{};      ///< valid where the volumes of a split tie, to break the tie by
+};
+
+/// Which parts of a split fall.
+enum class falling : std::uint8_t { neither, first, second, both };
+
 /// What a cell is made of [Mateos et al., section 3].
 enum class cell_state : std::uint8_t { solid, air, core };
 

@@ -48,16 +48,6 @@ concept breakage_rule = std::copy_constructible<R> && requires(R const& r, link_
     { r.break_chance(l) } -> std::same_as<double>;
 };
 
-/// One of the two parts that a broken link leaves.
-struct part {
-    std::int64_t volume = 0;       ///< fixed point, units of 2^-52 of the network's volume
-    std::size_t core_cells = 0;
-    cell_index lowest_cell{};      ///< only comparable between the two parts of one split
-};
-
-/// Which parts of a split fall.
-enum class falling : std::uint8_t { neither, first, second, both };
-
 /// Decides over a split. Laws: pure; swapping the arguments swaps the answer.
 /// A part with core cells never falls in the shipped rule; the engine does not enforce it.
 template <class R>
