@@ -1,0 +1,6 @@
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(range-v3)
+find_dependency(Boost 1.74)
+include("${CMAKE_CURRENT_LIST_DIR}/TafoniDependencies.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/tafoni-targets.cmake")

@@ -1,0 +1,40 @@
+# cmake -DCOMPILER=... -DID=GNU|Clang -DCASE=file -DINCLUDE=dir -DSYSTEM=dirs -P check.cmake
+
+set(flags -std=c++20 -fsyntax-only -fno-caret-diagnostics "-I${INCLUDE}")
+if(ID STREQUAL "GNU")
+    set(flags -std=c++20 -fsyntax-only -fno-diagnostics-show-caret -fconcepts-diagnostics-depth=2 -fmax-errors=1
+        "-I${INCLUDE}")
+else()
+    list(APPEND flags -ferror-limit=1)
+endif()
+foreach(folder IN LISTS SYSTEM)
+    list(APPEND flags -isystem "${folder}")
+endforeach()
+
+execute_process(COMMAND "${COMPILER}" ${flags} "${CASE}" RESULT_VARIABLE right ERROR_VARIABLE right_text)
+if(NOT right EQUAL 0)
+    message(FATAL_ERROR "does not compile without its mistake:\n${right_text}")
+endif()
+
+execute_process(COMMAND "${COMPILER}" ${flags} -DTAFONI_TEST_MISTAKE "${CASE}"
+    RESULT_VARIABLE wrong ERROR_VARIABLE wrong_text)
+if(wrong EQUAL 0)
+    message(FATAL_ERROR "compiles in spite of its mistake")
+endif()
+
+string(REGEX MATCHALL "\n" newlines "${wrong_text}")
+list(LENGTH newlines lines)
+if(lines GREATER 20)
+    message(FATAL_ERROR "the message has ${lines} lines, more than a reader takes in:\n${wrong_text}")
+endif()
+
+file(STRINGS "${CASE}" expectations REGEX "^// expect: ")
+if(NOT expectations)
+    message(FATAL_ERROR "the case says nothing of what to expect")
+endif()
+foreach(expectation IN LISTS expectations)
+    string(REGEX REPLACE "^// expect: " "" expectation "${expectation}")
+    if(NOT wrong_text MATCHES "${expectation}")
+        message(FATAL_ERROR "the message lacks '${expectation}':\n${wrong_text}")
+    endif()
+endforeach()

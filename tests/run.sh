@@ -1,0 +1,134 @@
+#!/bin/sh
+# Builds and passes the tests on Debian 12.
+#   sh tests/run.sh            everything that fits into half an hour on two cores
+#   sh tests/run.sh --fast     the quick tests with g++ only, for the inner loop
+#   sh tests/run.sh --full     also what the plain run leaves out
+#   --no-install   never call apt-get      --jobs N   parallel jobs (default: all cores)
+#   --build DIR    where to build (default: build)
+set -u
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+mode=plain
+install=yes
+jobs=$(nproc)
+build=$root/build
+while [ $# -gt 0 ]; do
+    case $1 in
+        --fast) mode=fast ;;
+        --full) mode=full ;;
+        --no-install) install=no ;;
+        --jobs) shift; jobs=$1 ;;
+        --build) shift; build=$1 ;;
+        -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+        *) echo "tests/run.sh: unknown option $1" >&2; exit 2 ;;
+    esac
+    shift
+done
+
+. "$root/cmake/packages.sh"
+packages="g++ cmake ninja-build catch2 libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev nlohmann-json3-dev"
+[ $mode = fast ] || packages="$packages clang-19 libclang-rt-19-dev"
+[ $mode = full ] && packages="$packages libbenchmark-dev"
+need_packages "$install" $packages || exit 1
+
+mkdir -p "$build"
+build=$(cd "$build" && pwd)
+logs=$build/logs
+rm -rf "$logs"
+mkdir -p "$logs"
+passed=0
+failed=0
+broken=""
+left_out=""
+start=$(date +%s)
+
+say() { printf '[%4ds] %s\n' $(($(date +%s) - start)) "$*"; }
+count() { # name status
+    if [ "$2" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        broken="$broken $1"
+    fi
+}
+step() { # name command...: one pass or fail
+    name=$1
+    shift
+    say "$name"
+    "$@" > "$logs/$name.log" 2>&1
+    status=$?
+    count "$name" $status
+    [ $status -eq 0 ] || tail -n 60 "$logs/$name.log"
+    return $status
+}
+tests() { # preset ctest-arguments...: every Catch case or program counts
+    preset=$1
+    shift
+    say "$preset: ctest $*"
+    (cd "$build/$preset" && ctest -j "$jobs" --output-on-failure "$@") > "$logs/$preset-ctest.log" 2>&1
+    status=$?
+    sum=$(awk -f "$root/tests/support/count.awk" "$build/$preset/Testing/Temporary/LastTest.log")
+    passed=$((passed + ${sum% *}))
+    failed=$((failed + ${sum#* }))
+    if [ $status -ne 0 ]; then
+        broken="$broken $preset-ctest"
+        [ "${sum#* }" -gt 0 ] || failed=$((failed + 1))
+        grep -v -E '^ *[0-9]+/[0-9]+ Test.*Passed|^ *Start +[0-9]+' "$logs/$preset-ctest.log" | head -n 300
+    fi
+}
+configured() { # preset cmake-arguments...
+    preset=$1
+    shift
+    step "$preset-configure" cmake -S "$root" -B "$build/$preset" --preset "$preset" "$@"
+}
+# A file that does not compile fails its own tests and no others.
+built() { # preset targets...
+    preset=$1
+    shift
+    step "$preset-build" cmake --build "$build/$preset" -j "$jobs" --target "$@" -- -k 0
+}
+
+if [ $mode = fast ]; then
+    configured gcc -DTAFONI_BUILD_EXAMPLES=OFF
+    built gcc all
+    tests gcc -L fast
+    left_out="slow tests, examples, compile-fail cases, header self-containment, consumer, clang, golden bits, sanitizers, fuzzing"
+else
+    configured gcc
+    built gcc all all_verify_interface_header_sets
+    step include-arrows cmake -P "$root/cmake/arrows.cmake"
+    step umbrella cmake -DCHECK=ON -P "$root/cmake/umbrella.cmake"
+    tests gcc
+
+    for compiler in g++ clang++-19; do
+        step "consumer-$compiler" sh "$root/tests/consumer/run.sh" "$compiler" "$build/consumer-$compiler"
+    done
+    step golden sh "$root/tests/determinism/run.sh" "$build/golden"
+
+    if [ $mode = full ]; then
+        configured clang
+        built clang all all_verify_interface_header_sets
+        tests clang
+        configured bench
+        built bench all
+    else
+        left_out="the plain clang build (its fast tests ran under the sanitizers), slow tests with clang, benchmarks"
+    fi
+
+    configured asan-ubsan
+    built asan-ubsan all
+    if [ $mode = full ]; then
+        tests asan-ubsan -L 'fast|slow|compile_fail|fuzz'
+    else
+        tests asan-ubsan -L 'fast|compile_fail|fuzz'
+    fi
+    configured tsan
+    built tsan all
+    tests tsan -L threads
+fi
+
+[ -z "$broken" ] || echo "failed in:$broken (logs in $logs)"
+[ -z "$left_out" ] || echo "left out: $left_out"
+say "done"
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
