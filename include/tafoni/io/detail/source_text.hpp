@@ -50,10 +50,9 @@ struct source_text {
         place.line = line;
         place.column = static_cast<std::uint64_t>(at - start) + 1;
         if (place.kind == entity::none) place.kind = entity::file;
-        fail<Error>(code,
-                    std::string(who) + ": " + place.file + ":" + std::to_string(line) + ":" +
-                        std::to_string(place.column) + ": " + message,
-                    std::move(place));
+        std::string const text = std::string(who) + ": " + place.file + ":" + std::to_string(line) + ":" +
+                                 std::to_string(place.column) + ": " + message;
+        fail<Error>(code, text, std::move(place));
     }
 
     /// Fails at a place in a binary file: "who: file: byte N: message".
@@ -62,9 +61,9 @@ struct source_text {
         place.file = std::string(name);
         if (place.kind == entity::none) place.kind = entity::file;
         if (place.index == error_place::nowhere) place.index = static_cast<std::uint64_t>(at - begin());
-        fail<io_error>(code,
-                       std::string(who) + ": " + place.file + ": byte " + std::to_string(at - begin()) + ": " + message,
-                       std::move(place));
+        std::string const text =
+            std::string(who) + ": " + place.file + ": byte " + std::to_string(at - begin()) + ": " + message;
+        fail<io_error>(code, text, std::move(place));
     }
 
     /// Refuses what can be none of our formats, by its first bytes: empty, compressed, UTF-16.
