@@ -1,0 +1,94 @@
+/// \file
+/// The connected shells of a closed surface, and whether inward ones lie in a solid.
+#ifndef TAFONI_GEOMETRY_DETAIL_SHELL_NESTING_HPP
+#define TAFONI_GEOMETRY_DETAIL_SHELL_NESTING_HPP
+
+#include <tafoni/core/error.hpp>
+#include <tafoni/geometry/detail/edge_table.hpp>
+#include <tafoni/geometry/solid.hpp>
+#include <tafoni/geometry/winding_number.hpp>
+
+#include <string>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// A volume below this part of the summed sizes of its terms is rounding, not volume.
+inline constexpr double volume_noise = 64 * 0x1p-53;
+
+/// Triangles joined through their edges.
+struct shell_table {
+    struct shell {
+        std::uint32_t first_triangle;
+        double six_volume = 0;  ///< in the frame of the given terms
+        double six_size = 0;    ///< sum of their sizes
+        box3 bounds{};
+        vec3 lowest{0, 0, 0};   ///< its lexicographically lowest vertex, a point of its outer side
+    };
+    std::vector<std::uint32_t> shell_of{};  ///< per triangle
+    std::vector<shell> shells{};            ///< by lowest triangle
+};
+
+/// Groups triangles; `six_volumes` are the terms of the volume sum. O(triangles).
+[[nodiscard]] inline shell_table find_shells(solid const& s, std::vector<double> const& six_volumes) {
+    std::size_t const n = s.triangles.size();
+    disjoint_sets sets(n);
+    for (std::size_t h = 0; h < s.opposite.size(); ++h) {
+        sets.join(static_cast<std::uint32_t>(h / 3), s.opposite[h] / 3);
+    }
+    shell_table r;
+    r.shell_of.resize(n);
+    for (std::uint32_t t = 0; t < n; ++t) {
+        std::uint32_t const root = sets.root(t);
+        if (root == t) {
+            r.shell_of[t] = static_cast<std::uint32_t>(r.shells.size());
+            r.shells.push_back({.first_triangle = t, .lowest = s.positions[s.triangles[t][0]]});
+        } else {
+            r.shell_of[t] = r.shell_of[root];
+        }
+        auto& shell = r.shells[r.shell_of[t]];
+        shell.six_volume += six_volumes[t];
+        shell.six_size += std::fabs(six_volumes[t]);
+        for (std::uint32_t const v : s.triangles[t]) {
+            vec3 const& p = s.positions[v];
+            shell.bounds.include(p);
+            if (lexicographically_less(p, shell.lowest)) shell.lowest = p;
+        }
+    }
+    return r;
+}
+
+/// Throws `inverted_orientation` for a shell of negative volume that lies inside no other shell.
+/// Shells without volume may face either way. O(triangles), plus O(triangles) per inward shell.
+inline void require_outward_shells(char const* who, solid const& s, std::vector<double> const& six_volumes) {
+    shell_table const table = find_shells(s, six_volumes);
+    std::size_t inverted = 0;
+    std::uint32_t first = 0;
+    for (std::uint32_t i = 0; i < table.shells.size(); ++i) {
+        auto const& shell = table.shells[i];
+        if (!(shell.six_volume < -volume_noise * shell.six_size)) continue;
+        int around = 0;
+        if (table.shells.size() > 1) {
+            for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+                std::uint32_t const other = table.shell_of[t];
+                if (other == i || !table.shells[other].bounds.contains(shell.lowest)) continue;
+                auto const& tri = s.triangles[t];
+                around += upward_crossing(s.positions[tri[0]], s.positions[tri[1]], s.positions[tri[2]], shell.lowest);
+            }
+        }
+        if (around > 0) continue;
+        if (inverted++ == 0) first = i;
+    }
+    if (inverted == 0) return;
+    std::uint32_t const face = s.polygon_of[table.shells[first].first_triangle];
+    fail<bad_topology>(errc::inverted_orientation,
+                       std::string(who) + ": " + std::to_string(inverted) + " of " +
+                           std::to_string(table.shells.size()) +
+                           " shells enclose negative volume and lie in no other, the first with face " +
+                           std::to_string(face),
+                       {.kind = entity::face, .index = face, .value = static_cast<double>(inverted), .limit = 0});
+}
+
+}  // namespace tafoni::detail
+
+#endif
