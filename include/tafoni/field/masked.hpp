@@ -1,0 +1,28 @@
+/// \file
+/// A field that holds inside a box only.
+#ifndef TAFONI_FIELD_MASKED_HPP
+#define TAFONI_FIELD_MASKED_HPP
+
+#include <tafoni/field/concepts.hpp>
+
+namespace tafoni {
+
+/// `base` inside the closed box, `outside` elsewhere. Models `scalar_field`.
+template <scalar_field Base>
+struct masked {
+    [[no_unique_address]] Base base{};
+    box3 box{};
+    double outside = 0;
+
+    /// Cost of `base`.
+    [[nodiscard]] double operator()(vec3 const& p) const { return box.contains(p) ? base(p) : outside; }
+};
+
+template <class Base>
+masked(Base, box3, double) -> masked<Base>;
+template <class Base>
+masked(Base, box3) -> masked<Base>;
+
+}  // namespace tafoni
+
+#endif
