@@ -1,0 +1,51 @@
+/// \file
+/// How water runs in the rock: a flow and the field of resistance it meets, in one piece.
+#ifndef TAFONI_PERCOLATION_SEEPAGE_HPP
+#define TAFONI_PERCOLATION_SEEPAGE_HPP
+
+#include <tafoni/field/concepts.hpp>
+#include <tafoni/percolation/gravity_flow.hpp>
+#include <tafoni/rules/roles.hpp>
+#include <tafoni/rules/uniform_resistance.hpp>
+
+namespace tafoni {
+
+namespace detail {
+struct flow_role {
+    template <class T>
+    static constexpr bool fits = flow_policy<T>;
+};
+struct resistance_role {
+    template <class T>
+    static constexpr bool fits = scalar_field<T>;
+};
+}  // namespace detail
+
+/// A flow policy together with a resistance field (rho in [0, 1], read once per link); models `flow_policy`.
+template <flow_policy Flow = gravity_flow, scalar_field Resistance = uniform_resistance>
+struct seepage {
+    [[no_unique_address]] Flow flow{};
+    [[no_unique_address]] Resistance resistance{};
+
+    [[nodiscard]] double weight(link_view const& here, link_view const& there, water const& w) const {
+        return flow.weight(here, there, w);
+    }
+    /// rho at a point, in [0, 1].
+    [[nodiscard]] double resistance_at(vec3 const& p) const { return resistance(p); }
+
+    template <class F>
+    void for_each_policy(F const& f) const {
+        f(flow);
+        f(resistance);
+    }
+};
+
+template <class... Parts>
+seepage(Parts...) -> seepage<detail::pick_role_t<detail::flow_role, gravity_flow, Parts...>,
+                             detail::pick_role_t<detail::resistance_role, uniform_resistance, Parts...>>;
+
+static_assert(flow_policy<seepage<>>);
+
+}  // namespace tafoni
+
+#endif
