@@ -1,0 +1,8 @@
+/// \file
+/// STL, both ways.
+#ifndef TAFONI_IO_STL_HPP
+#define TAFONI_IO_STL_HPP
+
+#include <tafoni/io/read_stl.hpp>
+
+#endif
