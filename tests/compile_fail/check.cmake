@@ -1,12 +1,7 @@
-# cmake -DCOMPILER=... -DID=GNU|Clang -DCASE=file -DINCLUDE=dir -DSYSTEM=dirs -P check.cmake
+# cmake -DCOMPILER=... -DCASE=file -DINCLUDE=dir -DSYSTEM=dirs -P check.cmake
 
-set(flags -std=c++20 -fsyntax-only -fno-caret-diagnostics "-I${INCLUDE}")
-if(ID STREQUAL "GNU")
-    set(flags -std=c++20 -fsyntax-only -fno-diagnostics-show-caret -fconcepts-diagnostics-depth=2 -fmax-errors=1
-        "-I${INCLUDE}")
-else()
-    list(APPEND flags -ferror-limit=1)
-endif()
+# The compilers' own defaults: what is counted is what a user sees.
+set(flags -std=c++20 -fsyntax-only "-I${INCLUDE}")
 foreach(folder IN LISTS SYSTEM)
     list(APPEND flags -isystem "${folder}")
 endforeach()

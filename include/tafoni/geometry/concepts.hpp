@@ -25,8 +25,9 @@ template <class M>
 struct mesh_access;
 
 /// A mesh of polygons that can be read. Laws: pure functions; equal calls give equal answers.
+/// The first part makes the compiler say only that `mesh_access<M>` is missing where it is.
 template <class M>
-concept polygon_mesh = requires(M const& m, std::size_t i) {
+concept polygon_mesh = requires { sizeof(mesh_access<M>); } && requires(M const& m, std::size_t i) {
     { mesh_access<M>::vertex_count(m) } -> std::same_as<std::size_t>;
     { mesh_access<M>::position(m, i) } -> std::same_as<vec3>;
     { mesh_access<M>::face_count(m) } -> std::same_as<std::size_t>;

@@ -1,0 +1,14 @@
+// expect: executor
+// expect: e\.thread_count\(\)
+#include <tafoni/core/executor.hpp>
+
+struct mine {
+#ifdef TAFONI_TEST_MISTAKE
+    void for_blocks(std::size_t n, std::size_t, auto const& f) const { f(0, n); }
+#else
+    void for_blocks(std::size_t n, std::size_t, auto const& f) const { f(0, n); }
+    std::size_t thread_count() const { return 1; }
+#endif
+};
+
+static_assert(tafoni::executor<mine>);

@@ -1,0 +1,13 @@
+// expect: flow_policy
+// expect: p\.weight\(here, there, w\)
+#include <tafoni/percolation/concepts.hpp>
+
+struct mine {
+#ifdef TAFONI_TEST_MISTAKE
+    double weight(tafoni::link_view const&, tafoni::link_view const&, tafoni::water const&) { return 1; }
+#else
+    double weight(tafoni::link_view const&, tafoni::link_view const&, tafoni::water const&) const { return 1; }
+#endif
+};
+
+static_assert(tafoni::flow_policy<mine>);
