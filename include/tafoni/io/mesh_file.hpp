@@ -18,6 +18,10 @@ namespace tafoni {
 /// How a channel's values are stored in a file; in memory they are always double.
 enum class channel_type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+/// How a writer stores coordinates. In float32 they are taken relative to an origin that the file
+/// records, rounded to float, so that a model far from zero keeps its details.
+enum class coordinate_type : std::uint8_t { float64, float32 };
+
 /// A named number per vertex or per face, parallel to the vertices or faces of the mesh.
 struct mesh_channel {
     std::string name{};            ///< bytes without white space, kept as they are

@@ -4,5 +4,6 @@
 #define TAFONI_IO_OBJ_HPP
 
 #include <tafoni/io/read_obj.hpp>
+#include <tafoni/io/write_obj.hpp>
 
 #endif

@@ -4,5 +4,6 @@
 #define TAFONI_IO_STL_HPP
 
 #include <tafoni/io/read_stl.hpp>
+#include <tafoni/io/write_stl.hpp>
 
 #endif
