@@ -31,9 +31,10 @@ struct alignas(64) link_record {
 template <link_network Network>
 class link_table {
 public:
-    /// Copies centroids, areas and cells; lives 1, resistances 0, states `gone`. O(links).
+    /// Copies centroids, normals, areas and cells; lives 1, resistances 0, states `gone`. O(links).
     /// \throws invalid_input  for an area or a centroid that is not finite, or an area <= 0.
-    explicit link_table(Network const& network) : network_(&network), records_(network.link_count()) {
+    explicit link_table(Network const& network)
+        : network_(&network), records_(network.link_count()), normals_(network.link_count(), vec3{0, 0, 0}) {
         for (std::size_t i = 0; i < records_.size(); ++i) {
             link_index const l{i};
             if (!network.has_link(l)) continue;
@@ -44,6 +45,7 @@ public:
             r.z = c[2];
             r.area = network.link_area(l);
             r.cells = network.link_cells(l);
+            normals_[i] = network.link_normal(l);
             if (!(r.area > 0 && r.area <= std::numeric_limits<double>::max()) || !is_finite(c)) {
                 detail::fail<invalid_input>(errc::out_of_range,
                                             "link_table: link " + std::to_string(i) + " has area " +
@@ -63,12 +65,12 @@ public:
     [[nodiscard]] link_view view(link_index l) const {
         link_record const& r = records_[l.value];
         bool const bonded = r.state == link_state::bonded;
-        vec3 n = network_->link_normal(l);
-        if (r.inward) n = vec3{-n[0], -n[1], -n[2]};
+        vec3 const& n = normals_[l.value];
+        double const sign = r.inward ? -1.0 : 1.0;
         return link_view{.id = l,
                          .cells = r.cells,
                          .centroid = vec3{r.x, r.y, r.z},
-                         .normal = n,
+                         .normal = vec3{sign * n[0], sign * n[1], sign * n[2]},
                          .area = r.area,
                          .life = bonded ? r.life : 0.0,
                          .resistance = bonded ? r.resistance : 0.0,
@@ -90,6 +92,7 @@ public:
 private:
     Network const* network_;
     std::vector<link_record> records_;
+    std::vector<vec3> normals_;  ///< beside the records: most policies do not read them
 };
 
 }  // namespace tafoni
