@@ -1,0 +1,470 @@
+/// \file
+/// One Voronoi cell in a box, cut plane by plane.
+#ifndef TAFONI_DECOMPOSITION_DETAIL_VORONOI_CELL_HPP
+#define TAFONI_DECOMPOSITION_DETAIL_VORONOI_CELL_HPP
+
+#include <tafoni/geometry/predicates.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// The box in which cells live, lattice coordinates.
+struct lattice_box {
+    ivec3 lo{};
+    ivec3 hi{};
+};
+
+/// A point and a bound on its distance from the true one, relative to a site.
+struct vertex_estimate {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    double error = 0;
+};
+
+/// n . y = h for a plane of the cell of `base`, in doubles.
+struct double_plane {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    double h = 0;
+    double nn = 0;  ///< |n|^2
+};
+
+[[nodiscard]] inline double_plane to_double_plane(ivec3 const& base, exact::plane const& p) noexcept {
+    if (p.axis >= 0) {
+        auto const a = static_cast<std::size_t>(p.axis);
+        double const e = p.upper ? 1 : -1;
+        std::array<double, 3> n{0, 0, 0};
+        n[a] = e;
+        return {n[0], n[1], n[2], e * static_cast<double>(p.at[a] - base[a]), 1};
+    }
+    auto const x = static_cast<double>(p.at[0] - base[0]);
+    auto const y = static_cast<double>(p.at[1] - base[1]);
+    auto const z = static_cast<double>(p.at[2] - base[2]);
+    double const nn = x * x + y * y + z * z;
+    return {x, y, z, 0.5 * nn, nn};
+}
+
+/// Where three planes meet, from integers: right to four roundings however flat the corner is. About 300 ns.
+[[nodiscard]] inline vertex_estimate solve_exactly(ivec3 const& base, exact::plane const& a, exact::plane const& b,
+                                                   exact::plane const& c) noexcept {
+    using namespace exact::detail;
+    auto const ra = plane_row<limb>(base, a);
+    auto const rb = plane_row<limb>(base, b);
+    auto const rc = plane_row<limb>(base, c);
+    auto const bc = cross(rb.n, rc.n);
+    auto const ca = cross(rc.n, ra.n);
+    auto const ab = cross(ra.n, rb.n);
+    double const det = 2 * to_double(dot(ra.n, bc));
+    auto const at = [&](std::size_t k) { return to_double(ra.h * bc[k] + rb.h * ca[k] + rc.h * ab[k]) / det; };
+    vertex_estimate v{at(0), at(1), at(2), 0};
+    v.error = 0x1p-49 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+    return v;
+}
+
+/// Where three planes of the cell of `base` meet, by Cramer's rule; exactly where that is too flat.
+[[nodiscard]] inline vertex_estimate solve(ivec3 const& base, exact::plane const& pa, exact::plane const& pb,
+                                           exact::plane const& pc) noexcept {
+    double_plane const a = to_double_plane(base, pa);
+    double_plane const b = to_double_plane(base, pb);
+    double_plane const c = to_double_plane(base, pc);
+    double const bcx = b.y * c.z - b.z * c.y;
+    double const bcy = b.z * c.x - b.x * c.z;
+    double const bcz = b.x * c.y - b.y * c.x;
+    double const cax = c.y * a.z - c.z * a.y;
+    double const cay = c.z * a.x - c.x * a.z;
+    double const caz = c.x * a.y - c.y * a.x;
+    double const abx = a.y * b.z - a.z * b.y;
+    double const aby = a.z * b.x - a.x * b.z;
+    double const abz = a.x * b.y - a.y * b.x;
+    double const det = a.x * bcx + a.y * bcy + a.z * bcz;
+    double const size = std::sqrt(a.nn * b.nn * c.nn);
+    if (!(std::fabs(det) > 1e-3 * size)) return solve_exactly(base, pa, pb, pc);
+    vertex_estimate v;
+    double const f = 1 / det;
+    v.x = (a.h * bcx + b.h * cax + c.h * abx) * f;
+    v.y = (a.h * bcy + b.h * cay + c.h * aby) * f;
+    v.z = (a.h * bcz + b.h * caz + c.h * abz) * f;
+    // Each term of the numerators is at most |a||b||c||v|: about 50 roundings of that, over det.
+    v.error = 0x1p-47 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z)) * size * std::fabs(f);
+    return v;
+}
+
+#if defined(__AVX__)
+inline namespace avx {
+inline constexpr std::size_t cell_lanes = 4;
+#else
+inline namespace baseline {
+inline constexpr std::size_t cell_lanes = 2;
+#endif
+using lanes = double __attribute__((vector_size(8 * cell_lanes)));
+
+/// The convex cell of one site, as its dual: a vertex is the triple of planes (a, b, c) that meet there,
+/// with det(n_a, n_b, n_c) > 0, so the vertex across its edge a -> b holds b -> a [Ray et al. 2018].
+///
+/// All decisions are exact; the positions kept here only filter. `Planes` > 0 bounds the number of
+/// planes alive and keeps everything in fixed tables; 0 is for the rare cell beyond that.
+template <std::size_t Planes>
+class voronoi_cell {
+    static constexpr bool fixed = Planes != 0;
+    static constexpr std::size_t max_vertices = 2 * Planes;  // simple polytopes have 2 F - 4
+    using id = std::conditional_t<fixed, std::uint8_t, std::uint32_t>;
+    template <class T, std::size_t N>
+    using buffer = std::conditional_t<fixed, std::array<T, N>, std::vector<T>>;
+
+public:
+    using triple = std::array<id, 3>;
+
+    /// The whole box. Planes 0 to 5 are -x, +x, -y, +y, -z, +z with ids wall_id + 0 .. 5.
+    void start(exact::site const& site, lattice_box const& box, std::uint32_t wall_id) {
+        site_ = site;
+        planes_ = 0;
+        free_.clear();
+        grow(8, 6);
+        for (std::uint32_t w = 0; w < 6; ++w) {
+            auto const axis = static_cast<int>(w / 2);
+            bool const upper = w % 2 != 0;
+            auto const a = static_cast<std::size_t>(axis);
+            plane_[w] = exact::wall{axis, upper, upper ? box.hi[a] : box.lo[a]};
+            id_[w] = wall_id + w;
+            degree_[w] = 4;
+        }
+        planes_ = 6;
+        count_ = 8;
+        for (std::uint32_t v = 0; v < 8; ++v) {
+            auto const px = static_cast<id>(v & 1);
+            auto const py = static_cast<id>(2 + (v >> 1 & 1));
+            auto const pz = static_cast<id>(4 + (v >> 2 & 1));
+            bool const even = ((v ^ v >> 1 ^ v >> 2) & 1) != 0;  // an odd number of upper walls: det > 0
+            set(v, even ? triple{px, py, pz} : triple{px, pz, py});
+            auto const offset = [&](std::size_t a) {
+                return static_cast<double>((v >> a & 1 ? box.hi[a] : box.lo[a]) - site.at[a]);
+            };
+            put(v, {offset(0), offset(1), offset(2), 0});
+            error_[v] = 0x1p-52 * (std::fabs(x_[v]) + std::fabs(y_[v]) + std::fabs(z_[v]));
+        }
+        pad();
+        update_radius();
+    }
+
+    /// Takes away what is nearer to `other`. False when the fixed tables are full: start again with a larger cell.
+    [[nodiscard]] bool cut(exact::site const& other) {
+        auto const nx = static_cast<double>(other.at[0] - site_.at[0]);
+        auto const ny = static_cast<double>(other.at[1] - site_.at[1]);
+        auto const nz = static_cast<double>(other.at[2] - site_.at[2]);
+        double const h = 0.5 * (nx * nx + ny * ny + nz * nz);
+        if (h > 2.000001 * radius2_) return true;
+        double const n1 = std::fabs(nx) + std::fabs(ny) + std::fabs(nz);
+        double const floor = 0x1p-49 * n1 * radius_;
+        if (!maybe_cuts(nx, ny, nz, h, n1, floor)) return true;
+        removed_.clear();
+        for (std::uint32_t v = 0; v < count_; ++v) {
+            double const margin = error_[v] * n1 + floor;
+            if (side_[v] < -margin) continue;
+            if (side_[v] > margin || beyond(v, other)) {
+                removed_.push_back(v);
+                flag_[v] = 1;
+            }
+        }
+        if (removed_.empty()) return true;
+        return replace_removed(other, n1);
+    }
+
+    /// Square of the distance of the farthest vertex from the site, not less than the true one.
+    [[nodiscard]] double radius2() const noexcept { return 1.000001 * radius2_; }
+    [[nodiscard]] std::uint32_t vertex_count() const noexcept { return count_; }
+    [[nodiscard]] std::uint32_t plane_count() const noexcept { return planes_; }
+    [[nodiscard]] bool alive(std::uint32_t p) const noexcept { return degree_[p] != 0; }
+    [[nodiscard]] std::uint32_t degree(std::uint32_t p) const noexcept { return degree_[p]; }
+    [[nodiscard]] std::uint32_t id_of(std::uint32_t p) const noexcept { return id_[p]; }
+    [[nodiscard]] exact::plane const& plane_of(std::uint32_t p) const noexcept { return plane_[p]; }
+    [[nodiscard]] triple const& vertex(std::uint32_t v) const noexcept { return triple_[v]; }
+    [[nodiscard]] exact::site const& site() const noexcept { return site_; }
+
+    /// Could a site in the box (lattice units relative to this site) cut the cell? Never a wrong no. O(vertices).
+    [[nodiscard]] bool reachable(std::array<double, 3> const& lo, std::array<double, 3> const& hi) const noexcept {
+        auto const gap = [](double l, double u, double q) { return std::max(0.0, std::max(l - q, q - u)); };
+        double const ox = gap(lo[0], hi[0], 0);
+        double const oy = gap(lo[1], hi[1], 0);
+        double const oz = gap(lo[2], hi[2], 0);
+        if (ox * ox + oy * oy + oz * oz > 4 * radius2()) return false;
+        for (std::uint32_t v = 0; v < count_; ++v) {
+            double const dx = gap(lo[0], hi[0], x_[v]);
+            double const dy = gap(lo[1], hi[1], y_[v]);
+            double const dz = gap(lo[2], hi[2], z_[v]);
+            if (dx * dx + dy * dy + dz * dz <= 1.000001 * r2_[v]) return true;
+        }
+        return false;
+    }
+
+    /// Calls visit(v) for the vertices of plane p, counter-clockwise seen from outside. O(degree), or
+    /// O(degree log vertices) without tables, after `prepare_walks`.
+    template <class Visit>
+    void walk(std::uint32_t p, std::uint32_t first, Visit const& visit) const {
+        std::uint32_t v = first;
+        do {
+            visit(v);
+            triple const& t = triple_[v];
+            id const before = t[0] == p ? t[2] : t[1] == p ? t[0] : t[1];
+            v = holder(static_cast<id>(p), before);
+        } while (v != first);
+    }
+
+    void prepare_walks() {
+        if constexpr (!fixed) {
+            edges_.clear();
+            for (std::uint32_t v = 0; v < count_; ++v) {
+                for (std::size_t k = 0; k < 3; ++k) edges_.push_back({key(triple_[v][k], triple_[v][(k + 1) % 3]), v});
+            }
+            std::sort(edges_.begin(), edges_.end(), [](auto const& a, auto const& b) { return a.key < b.key; });
+        }
+    }
+
+private:
+    struct directed_edge {
+        std::uint64_t key;
+        std::uint32_t vertex;
+    };
+    struct open_edge {
+        id a;
+        id b;
+        std::uint32_t removed;
+        std::uint32_t kept;
+    };
+
+    static std::uint64_t key(std::uint64_t a, std::uint64_t b) noexcept { return a << 32 | b; }
+
+    [[nodiscard]] std::uint32_t holder(id a, id b) const noexcept {
+        if constexpr (fixed) {
+            return holder_[a * Planes + b];
+        } else {
+            auto const k = key(a, b);
+            auto const e = std::lower_bound(edges_.begin(), edges_.end(), k,
+                                            [](directed_edge const& l, std::uint64_t r) { return l.key < r; });
+            return e->vertex;
+        }
+    }
+
+    void grow(std::size_t vertices, std::size_t planes) {
+        if constexpr (!fixed) {
+            std::size_t const v = vertices + cell_lanes;
+            if (x_.size() < v) {
+                std::size_t const n = 2 * v;
+                for (auto* b : {&x_, &y_, &z_, &error_, &r2_, &side_}) b->resize(n);
+                triple_.resize(n);
+                flag_.resize(n);
+            }
+            if (plane_.size() < planes) {
+                plane_.resize(2 * planes);
+                id_.resize(2 * planes);
+                degree_.resize(2 * planes);
+            }
+        }
+    }
+
+    void set(std::uint32_t v, triple const& t) noexcept {
+        triple_[v] = t;
+        if constexpr (fixed) {
+            auto const w = static_cast<std::uint8_t>(v);
+            holder_[t[0] * Planes + t[1]] = w;
+            holder_[t[1] * Planes + t[2]] = w;
+            holder_[t[2] * Planes + t[0]] = w;
+        }
+    }
+
+    void put(std::uint32_t v, vertex_estimate const& e) noexcept {
+        x_[v] = e.x;
+        y_[v] = e.y;
+        z_[v] = e.z;
+        error_[v] = e.error;
+        r2_[v] = e.x * e.x + e.y * e.y + e.z * e.z;
+    }
+
+    void pad() noexcept {
+        for (std::uint32_t v = count_; v % cell_lanes != 0; ++v) put(v, {});
+    }
+
+    void update_radius() noexcept {
+        double r = 0;
+        for (std::uint32_t v = 0; v < count_; ++v) r = r2_[v] > r ? r2_[v] : r;
+        radius2_ = r;
+        radius_ = std::sqrt(r);
+    }
+
+    [[nodiscard]] bool maybe_cuts(double nx, double ny, double nz, double h, double n1, double floor) noexcept {
+        auto const* x = x_.data();
+        auto const* y = y_.data();
+        auto const* z = z_.data();
+        auto const* e = error_.data();
+        auto* s = side_.data();
+        lanes most = lanes{} - 1;
+        for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
+            lanes const value = load(x + v) * nx + load(y + v) * ny + load(z + v) * nz - h;
+            store(s + v, value);
+            lanes const top = value + (load(e + v) * n1 + floor);
+            most = top > most ? top : most;
+        }
+        bool any = false;
+        for (std::size_t k = 0; k < cell_lanes; ++k) any = any || most[k] > 0;
+        return any;
+    }
+
+    static lanes load(double const* p) noexcept {
+        lanes v;
+        __builtin_memcpy(&v, p, sizeof v);
+        return v;
+    }
+    static void store(double* p, lanes v) noexcept { __builtin_memcpy(p, &v, sizeof v); }
+
+    [[nodiscard]] bool beyond(std::uint32_t v, exact::site const& other) const noexcept {
+        triple const& t = triple_[v];
+        return exact::side4(site_, plane_[t[0]], plane_[t[1]], plane_[t[2]], other) > 0;
+    }
+
+    // The edges between removed and kept vertices, each with its removed end's direction a -> b.
+    void find_open_edges() {
+        open_.clear();
+        if constexpr (fixed) {
+            for (std::uint32_t v : removed_) {
+                triple const t = triple_[v];
+                for (std::size_t k = 0; k < 3; ++k) {
+                    id const a = t[k];
+                    id const b = t[k == 2 ? 0 : k + 1];
+                    std::uint32_t const w = holder(b, a);
+                    if (flag_[w] == 0) open_.push_back({a, b, v, w});
+                }
+            }
+        } else {
+            // Edges inside the removed part occur in both directions and cancel.
+            edges_.clear();
+            for (std::uint32_t v : removed_) {
+                for (std::size_t k = 0; k < 3; ++k) edges_.push_back({key(triple_[v][k], triple_[v][(k + 1) % 3]), v});
+            }
+            std::sort(edges_.begin(), edges_.end(), [](auto const& a, auto const& b) { return a.key < b.key; });
+            for (auto const& e : edges_) {
+                std::uint64_t const twin = key(e.key & 0xffffffffU, e.key >> 32);
+                auto const t = std::lower_bound(edges_.begin(), edges_.end(), twin,
+                                                [](directed_edge const& l, std::uint64_t r) { return l.key < r; });
+                if (t != edges_.end() && t->key == twin) continue;
+                open_.push_back({static_cast<id>(e.key >> 32), static_cast<id>(e.key & 0xffffffffU), e.vertex, 0});
+            }
+        }
+    }
+
+    [[nodiscard]] bool replace_removed(exact::site const& other, double n1) {
+        TAFONI_ASSERT(removed_.size() < count_, "a cell holds its site");
+        id p{};
+        if (!free_.empty()) {
+            p = free_.back();
+            free_.pop_back();
+        } else {
+            if constexpr (fixed) {
+                if (planes_ == Planes) return false;
+            }
+            p = static_cast<id>(planes_++);
+            grow(count_, planes_);
+        }
+        plane_[p] = other;
+        id_[p] = other.rank;
+        find_open_edges();
+        degree_[p] = static_cast<std::uint32_t>(open_.size());
+        fresh_.clear();
+        for (auto const& e : open_) fresh_.push_back(crossing(e, p, n1));
+        for (std::uint32_t v : removed_) {
+            flag_[v] = 0;
+            for (id q : triple_[v]) --degree_[q];
+        }
+        for (auto const& e : open_) {
+            ++degree_[e.a];
+            ++degree_[e.b];
+        }
+        for (std::uint32_t v : removed_) {
+            for (id q : triple_[v]) {
+                if (degree_[q] == 0) {
+                    degree_[q] = 1;  // once only
+                    free_.push_back(q);
+                }
+            }
+        }
+        for (id q : free_) degree_[q] = 0;
+        grow(count_ + open_.size(), planes_);
+        std::size_t used = 0;
+        for (std::size_t k = 0; k < open_.size(); ++k) {
+            std::uint32_t const v = used < removed_.size() ? removed_[used++] : count_++;
+            set(v, {open_[k].a, open_[k].b, p});
+            put(v, fresh_[k]);
+        }
+        // Slots left over, from the last: move the last vertex in.
+        while (removed_.size() > used) {
+            std::uint32_t const hole = removed_.back();
+            removed_.pop_back();
+            --count_;
+            if (hole == count_) continue;
+            set(hole, triple_[count_]);
+            put(hole, {x_[count_], y_[count_], z_[count_], error_[count_]});
+        }
+        pad();
+        update_radius();
+        return true;
+    }
+
+    // The point where an edge meets the new plane: between its ends when that is accurate enough.
+    [[nodiscard]] vertex_estimate crossing(open_edge const& e, id p, double n1) const noexcept {
+        if constexpr (fixed) {
+            double const sv = side_[e.removed];
+            double const sw = side_[e.kept];
+            if (sv > 0 && sw < 0) {
+                double const f = 1 / (sv - sw);
+                double const t = -sw * f;
+                double const dx = x_[e.removed] - x_[e.kept];
+                double const dy = y_[e.removed] - y_[e.kept];
+                double const dz = z_[e.removed] - z_[e.kept];
+                vertex_estimate v;
+                v.x = x_[e.kept] + t * dx;
+                v.y = y_[e.kept] + t * dy;
+                v.z = z_[e.kept] + t * dz;
+                // Off the true edge by at most the ends' errors; along it by that over the sine of the angle.
+                double const off = std::max(error_[e.removed], error_[e.kept]) + 0x1p-48 * radius_;
+                v.error = off * (1 + n1 * (std::fabs(dx) + std::fabs(dy) + std::fabs(dz)) * f);
+                if (v.error < 0x1p-34 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z))) return v;
+            }
+        }
+        return solve(site_.at, plane_[e.a], plane_[e.b], plane_[p]);
+    }
+
+    exact::site site_{};
+    std::uint32_t count_ = 0;
+    std::uint32_t planes_ = 0;
+    double radius2_ = 0;
+    double radius_ = 0;
+    alignas(32) buffer<double, max_vertices + 4> x_{};
+    alignas(32) buffer<double, max_vertices + 4> y_{};
+    alignas(32) buffer<double, max_vertices + 4> z_{};
+    alignas(32) buffer<double, max_vertices + 4> error_{};
+    alignas(32) buffer<double, max_vertices + 4> r2_{};
+    alignas(32) buffer<double, max_vertices + 4> side_{};
+    buffer<triple, max_vertices + 4> triple_{};
+    buffer<std::uint8_t, max_vertices + 4> flag_{};
+    buffer<exact::plane, Planes> plane_{};
+    buffer<std::uint32_t, Planes> id_{};
+    buffer<std::uint32_t, Planes> degree_{};
+    buffer<std::uint8_t, Planes * Planes> holder_{};
+    std::vector<id> free_;
+    std::vector<std::uint32_t> removed_;
+    std::vector<open_edge> open_;
+    std::vector<vertex_estimate> fresh_;
+    std::vector<directed_edge> edges_;
+};
+
+}  // namespace baseline or avx
+}  // namespace tafoni::detail
+
+#endif
