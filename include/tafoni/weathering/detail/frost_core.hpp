@@ -19,6 +19,28 @@
 
 namespace tafoni::detail {
 
+/// The infiltration that comes with a rain, else the paper's.
+template <class Rain>
+[[nodiscard]] auto const& infiltration_of(Rain const& rain) noexcept {
+    if constexpr (infiltration_policy<Rain>) {
+        return rain;
+    } else {
+        static constexpr facing_infiltration facing{};
+        return facing;
+    }
+}
+
+/// The soaking that comes with an absorption, else the paper's.
+template <class Absorb>
+[[nodiscard]] auto const& soaking_of(Absorb const& absorb) noexcept {
+    if constexpr (soaking_rule<Absorb>) {
+        return absorb;
+    } else {
+        static constexpr depletion_soaking depletion{};
+        return depletion;
+    }
+}
+
 /// State and derived structures of `frost_run`, whose members document them.
 template <class Network, class Process>
 class frost_core {
@@ -68,15 +90,8 @@ public:
 
     /// References to the parts of the process; what it does not say is the paper's default.
     [[nodiscard]] auto policies() const noexcept {
-        static constexpr facing_infiltration facing{};
-        static constexpr depletion_soaking depletion{};
-        auto const& infiltration = [this]() -> auto const& {
-            if constexpr (infiltration_policy<decltype(process.rain)>) return process.rain; else return facing;
-        }();
-        auto const& soaking = [this]() -> auto const& {
-            if constexpr (soaking_rule<decltype(process.absorb)>) return process.absorb; else return depletion;
-        }();
-        return path_policies{process.rain, infiltration, process.flow, process.absorb, soaking};
+        return path_policies{process.rain, infiltration_of(process.rain), process.flow, process.absorb,
+                             soaking_of(process.absorb)};
     }
     [[nodiscard]] path_options numbers() const noexcept {
         return {.seed = options.seed,
