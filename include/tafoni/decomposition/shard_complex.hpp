@@ -46,6 +46,7 @@ struct shard_complex {
     double size = 0;                            ///< diagonal of the solid's box
 
     std::size_t merged_sites = 0;               ///< duplicates merged on request
+    std::size_t dropped_sites = 0;              ///< sites outside the solid's box, left out on request
     std::size_t merged_slivers = 0;             ///< shards below the volume limit, given to a neighbour
 
     [[nodiscard]] std::size_t cell_count() const noexcept { return volumes.size(); }

@@ -1,0 +1,132 @@
+/// \file
+/// Turns faces and shards in builder's numbers into the complex that the caller gets.
+#ifndef TAFONI_DECOMPOSITION_DETAIL_COMPLEX_ASSEMBLY_HPP
+#define TAFONI_DECOMPOSITION_DETAIL_COMPLEX_ASSEMBLY_HPP
+
+#include <tafoni/decomposition/detail/shard_split.hpp>
+#include <tafoni/decomposition/detail/smooth_patches.hpp>
+#include <tafoni/decomposition/shard_complex.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// Fills cell_begin and cell_faces from the faces, ascending around each cell. O(faces).
+inline void index_cell_faces(shard_complex& c) {
+    c.cell_begin.assign(c.volumes.size() + 1, 0);
+    auto const for_entries = [&c](auto const& f) {
+        for (std::uint32_t k = 0; k < c.faces.size(); ++k) {
+            f(c.faces[k].front.value, k);
+            if (c.faces[k].back.valid()) f(c.faces[k].back.value, k);
+        }
+    };
+    for_entries([&c](std::uint32_t cell, std::uint32_t) { ++c.cell_begin[cell + 1]; });
+    for (std::size_t k = 0; k < c.volumes.size(); ++k) c.cell_begin[k + 1] += c.cell_begin[k];
+    c.cell_faces.resize(c.cell_begin.back());
+    std::vector<std::size_t> next(c.cell_begin.begin(), c.cell_begin.end() - 1);
+    for_entries([&](std::uint32_t cell, std::uint32_t face) { c.cell_faces[next[cell]++] = face; });
+}
+
+/// Fills site_begin and shards_of_site from site_of. O(sites + cells).
+/// `same_as[s]` is the site whose cell the duplicate s shares; empty when there are no duplicates.
+inline void index_sites(shard_complex& c, std::vector<std::uint32_t> const& same_as) {
+    std::vector<std::size_t> begin(c.sites.size() + 1, 0);
+    for (site_index s : c.site_of) ++begin[s.value + 1];
+    for (std::size_t s = 0; s < c.sites.size(); ++s) begin[s + 1] += begin[s];
+    std::vector<cell_index> shards(c.site_of.size());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (std::uint32_t k = 0; k < c.site_of.size(); ++k) shards[next[c.site_of[k].value]++] = cell_index{k};
+    if (same_as.empty()) {
+        c.site_begin = std::move(begin);
+        c.shards_of_site = std::move(shards);
+        return;
+    }
+    c.site_begin.assign(1, 0);
+    c.shards_of_site.clear();
+    for (std::size_t s = 0; s < c.sites.size(); ++s) {
+        std::uint32_t const o = same_as[s];
+        for (std::size_t k = begin[o]; k < begin[o + 1]; ++k) c.shards_of_site.push_back(shards[k]);
+        c.site_begin.push_back(c.shards_of_site.size());
+    }
+}
+
+/// Renumbers vertices by what is used and moves everything into the caller's frame, where the origin of `frame`
+/// is the lattice point (margin, margin, margin). `interior` is used up. O(n).
+template <class Executor>
+void assemble_complex(polygon_set& interior, shard_split& split, vertex_places const& places, solid const& body,
+                      patch_map const& patches, double margin, Executor const& threads, shard_complex& out) {
+    lattice_frame const& frame = places.diagram.frame;
+    auto const to_user = [&](vec3 const& p) { return frame.to_user(vec3{p[0] - margin, p[1] - margin, p[2] - margin}); };
+    surface_pieces const& pieces = places.pieces;
+    std::size_t const inside = interior.front.size();
+    std::size_t const skin = pieces.cell.size();
+    out.interior_face_count = inside;
+    out.faces.resize(inside + skin);
+    for (std::size_t i = 0; i + 1 < split.face_begin.size(); ++i) {
+        for (std::size_t e = split.face_begin[i]; e < split.face_begin[i + 1]; ++e) {
+            std::uint32_t const f = split.faces[e];
+            cell_index const shard{split.shard_begin[i] + split.label[e]};
+            if (f >= inside || interior.front[f] == i) out.faces[f].front = shard;
+            if (f < inside && interior.back[f] == i) out.faces[f].back = shard;
+        }
+    }
+    for (std::size_t p = 0; p < skin; ++p) {
+        auto& face = out.faces[inside + p];
+        face.source = pieces.triangle_of[p];
+        face.patch = patches.of[body.polygon_of[face.source]];
+    }
+
+    std::vector<std::uint32_t> number(places.numbers.end, 0);
+    for (std::uint32_t c : interior.corners) number[c] = 1;
+    for (std::uint32_t c : pieces.corners) number[c] = 1;
+    std::uint32_t used = 0;
+    for (std::uint32_t& n : number) {
+        if (n != 0) n = used++;
+        else n = no_id;
+    }
+    out.vertices.resize(used);
+    threads.for_blocks(number.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            if (number[n] == no_id) continue;
+            bool const given = n >= places.numbers.solid && n < places.numbers.edge;
+            out.vertices[number[n]] = given ? body.positions[n - places.numbers.solid]
+                                            : to_user(places(static_cast<std::uint32_t>(n)));
+        }
+    });
+    out.corners.resize(interior.corners.size() + pieces.corners.size());
+    out.loop_begin = std::move(interior.loop_begin);
+    out.face_begin = std::move(interior.face_begin);
+    for (std::size_t k = 0; k < interior.corners.size(); ++k) out.corners[k] = vertex_index{number[interior.corners[k]]};
+    std::size_t const first = interior.corners.size();
+    for (std::size_t k = 0; k < pieces.corners.size(); ++k) {
+        out.corners[first + k] = vertex_index{number[pieces.corners[k]]};
+    }
+    out.loop_begin.reserve(out.loop_begin.size() + skin);
+    out.face_begin.reserve(out.face_begin.size() + skin);
+    for (std::size_t p = 0; p < skin; ++p) {
+        out.loop_begin.push_back(first + pieces.corner_begin[p + 1]);
+        out.face_begin.push_back(static_cast<std::uint32_t>(out.loop_begin.size() - 1));
+    }
+
+    std::size_t const shards = split.volumes.size();
+    out.volumes = std::move(split.volumes);
+    out.centroids = std::move(split.centroids);
+    out.site_of.resize(shards);
+    for (std::size_t i = 0; i + 1 < split.shard_begin.size(); ++i) {
+        for (std::uint32_t k = split.shard_begin[i]; k < split.shard_begin[i + 1]; ++k) {
+            out.site_of[k] = site_index{places.diagram.input_of[i]};
+        }
+    }
+    for (double& v : out.volumes) v = frame.to_user_volume(v);
+    for (vec3& c : out.centroids) c = to_user(c);
+    out.polygon_of = body.polygon_of;
+    out.patch_count = patches.count;
+    out.size = body.bounds.diagonal();
+    interior = polygon_set{};
+}
+
+}  // namespace tafoni::detail
+
+#endif
