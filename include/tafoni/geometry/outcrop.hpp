@@ -22,37 +22,42 @@ struct outcrop_shape {
     fractal_noise relief;  // blocks and cracks of the flank
     fractal_noise bedding;  // where the beds begin
     fractal_noise crown;   // the top
+    fractal_noise joints;  // upright clefts
 
     explicit outcrop_shape(std::uint64_t seed)
-        : relief{.seed = seed, .frequency = 0.55, .octaves = 5, .gain = 0.5},
+        : relief{.seed = seed, .frequency = 0.28, .octaves = 5, .gain = 0.45},
           bedding{.seed = seed + 1, .frequency = 0.25, .octaves = 2},
-          crown{.seed = seed + 2, .frequency = 0.6, .octaves = 4} {}
+          crown{.seed = seed + 2, .frequency = 0.6, .octaves = 4},
+          joints{.seed = seed + 3, .frequency = 0.45, .octaves = 2} {}
 
     [[nodiscard]] static double smooth(double t) noexcept {
         t = std::clamp(t, 0.0, 1.0);
         return t * t * (3 - 2 * t);
     }
 
-    /// Height of the rim, 2.6 to 4.4 m: the outcrop is higher at its front (-y) than at its back.
+    /// Height of the rim, 3.0 to 4.6 m: the outcrop is higher at its front (-y) than at its back.
     [[nodiscard]] double rim(vec3 const& out) const noexcept {
-        return 3.3 - 0.7 * out[1] + 0.4 * crown(vec3{2 * out[0], 2 * out[1], 0});
+        return 3.8 - 0.4 * out[1] + 0.35 * crown(vec3{2 * out[0], 2 * out[1], 0});
     }
 
     /// Distance from the axis at the share t in [0, 1] of the rim's height.
     [[nodiscard]] double flank(vec3 const& out, double t) const noexcept {
         double const z = t * rim(out);
-        double const plan = 1 / std::sqrt(out[0] * out[0] / (3.1 * 3.1) + out[1] * out[1] / (2.3 * 2.3));
-        double const front = smooth(0.5 - 0.9 * out[1]);
+        double const plan = 1 / std::sqrt(out[0] * out[0] / (3.0 * 3.0) + out[1] * out[1] / (2.2 * 2.2));
+        double const front = smooth(0.55 - 0.8 * out[1]);
         vec3 const at{plan * out[0], plan * out[1], z};
         // The back is a slope, the front a wall that hangs over a niche.
-        double const slope = 1.05 - 0.5 * t;
-        double const niche = smooth((t - 0.1) / 0.15) * smooth((0.62 - t) / 0.2);
-        double const wall = 1.0 - 0.27 * niche - 0.12 * smooth((t - 0.8) / 0.2);
-        double const bed = (z + 0.25 * bedding(at)) / 0.62;
+        double const slope = 0.98 - 0.25 * t;
+        double const niche = smooth((t - 0.02) / 0.2) * smooth((0.6 - t) / 0.25);
+        double const wall = 0.92 - 0.15 * niche * (1 + 0.6 * bedding(vec3{at[0] + 9, at[1], at[2]})) - 0.1 * smooth((t - 0.85) / 0.15);
+        // Beds of uneven thickness stick out by uneven amounts, and not all the way around.
+        double const bed = (z + 0.45 * bedding(at)) / 0.95;
         double const in_bed = bed - std::floor(bed);
-        double const ledge = 0.09 * (smooth(in_bed / 0.18) - in_bed);
-        double const foot = 0.16 * smooth((0.16 - t) / 0.16);
-        double const r = plan * (slope + front * (wall - slope) + ledge + foot + 0.17 * relief(at));
+        double const strength = 0.5 + 0.9 * bedding(vec3{at[0], at[1], 3 * std::floor(bed)});
+        double const ledge = 0.1 * std::max(strength, 0.0) * (smooth(in_bed / 0.12) - in_bed);
+        // Joints: upright clefts where a noise crosses zero.
+        double const cleft = 1 - std::min(1.0, 14 * std::fabs(joints(vec3{at[0], at[1], 0.25 * z})));
+        double const r = plan * (slope + front * (wall - slope) + ledge - 0.07 * cleft + 0.34 * relief(at));
         return std::max(r, 0.35);
     }
 
@@ -62,15 +67,15 @@ struct outcrop_shape {
         double const edge = rim(out);
         double const radius = u * flank(out, 1);
         double const bump = 0.25 + 0.25 * crown(vec3{radius * out[0], radius * out[1], 7});
-        double const dome = smooth(1 - u);
-        // Highest rim is 4.4: a crown of 4.5 stays above every rim.
-        return edge + dome * (4.5 - edge) + bump * smooth(4 * (1 - u)) * smooth(4 * u);
+        double const dome = smooth(1.6 * (1 - u));
+        // The highest rim is 4.55: a crown of 4.6 stays above every rim.
+        return edge + dome * (4.6 - edge) + bump * smooth(4 * (1 - u)) * smooth(4 * u);
     }
 };
 
 }  // namespace detail
 
-/// A procedural outcrop about 6 m wide, 5 m deep and 4.5 m high, standing on z = 0, z up: a wall with
+/// A procedural outcrop about 6 m wide, 5 m deep and 4.6 m high, standing on z = 0, z up: a wall with
 /// ledges and an overhang in front (-y), a slope behind.
 ///
 /// Closed, outward oriented, embedded, quads and two fans of triangles. `resolution` in 4 .. 2000 is
@@ -108,7 +113,7 @@ struct outcrop_shape {
     std::size_t const rings = up + over;
     auto const at = [&](std::size_t row, std::size_t i) { return static_cast<std::uint32_t>(row * around + i % around); };
     auto const bottom = mesh.add_vertex(vec3{0, 0, 0}).value;
-    auto const summit = mesh.add_vertex(vec3{0, 0, 4.5}).value;
+    auto const summit = mesh.add_vertex(vec3{0, 0, 4.6}).value;
     for (std::size_t i = 0; i < around; ++i) {
         mesh.add_face({bottom, at(0, i + 1), at(0, i)});
         for (std::size_t row = 0; row + 1 < rings; ++row) {
