@@ -45,7 +45,7 @@ template <class T>
     vec3 origin{0, 0, 0};
     for (int axis = 0; axis < 3; ++axis) {
         while (at != header + 80 && *at == ' ') ++at;
-        parsed_number const r = parse_double(at, header + 80);
+        parsed_number const r = parse_float(at, header + 80);
         if (r.state != number_state::ok || !std::isfinite(r.value)) return vec3{0, 0, 0};
         origin[axis] = r.value;
         at = r.next;
@@ -78,8 +78,9 @@ template <class T>
             char const* const place = at + 12 + 12 * k;
             vec3 p;
             for (int axis = 0; axis < 3; ++axis) {
-                p[axis] = static_cast<double>(std::bit_cast<float>(load_little<std::uint32_t>(place + 4 * axis))) +
-                          out.origin[axis];
+                p[axis] = static_cast<double>(std::bit_cast<float>(load_little<std::uint32_t>(place + 4 * axis)));
+                // Adding zero would turn -0.0 into 0.0, and the file would not come back as it was.
+                if (out.origin[axis] != 0) p[axis] += out.origin[axis];
             }
             if (!is_finite(p)) {
                 source.fail_at_byte(place, errc::non_finite_vertex,

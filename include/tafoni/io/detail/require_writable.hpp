@@ -5,6 +5,7 @@
 
 #include <tafoni/geometry/concepts.hpp>
 #include <tafoni/io/detail/ply_header.hpp>
+#include <tafoni/io/detail/source_text.hpp>
 #include <tafoni/io/mesh_file.hpp>
 
 #include <cmath>
@@ -50,7 +51,7 @@ inline void require_channels(char const* who, std::vector<mesh_channel> const& c
                    static_cast<double>(c.values.size()));
         }
         bool plain = !c.name.empty();
-        for (char const ch : c.name) plain = plain && static_cast<unsigned char>(ch) > ' ';
+        for (char const ch : c.name) plain = plain && !is_space(ch);
         if (!plain) refuse(errc::bad_parameter, c, "needs a name without white space", 0);
         for (std::size_t other = 0; other < k; ++other) {
             if (channels[other].name == c.name) refuse(errc::bad_parameter, c, "is there twice", 0);
