@@ -32,8 +32,8 @@ struct make_solid_fn {
     /// \throws invalid_input  empty_input, non_finite_vertex, index_out_of_range, degenerate_face,
     ///   out_of_range (the cube of the extent must be a normal number), attribute_length, size_overflow.
     /// \throws bad_topology  duplicate_face, nonmanifold_edge (more than two sides), inconsistent_orientation or
-    ///   non_orientable (two sides that run the same way), not_closed, zero_volume, inverted_orientation (a component
-    ///   that encloses negative volume and lies in no other one).
+    ///   non_orientable (two sides that run the same way), not_closed, inverted_orientation (a component that
+    ///   encloses negative volume and lies in no other one), zero_volume.
     /// Checks run in this order, non-finite vertices first; the message names element and count. For an edge the
     /// place holds the running number of the corner where its first side starts and, as value, how many there are.
     /// O(n log d) for n corners and at most d edges at a vertex, plus O(n) per cavity.

@@ -80,7 +80,7 @@ inline void cut_polygons(char const* who, indexed_mesh const& mesh, std::vector<
 }
 
 /// Volume and area, summed in a frame of about unit size at the low corner of the box so that neither
-/// overflows; throws `zero_volume` and `inverted_orientation`. O(triangles), plus O(triangles) per cavity.
+/// overflows; throws `inverted_orientation` and `zero_volume`. O(triangles), plus O(triangles) per cavity.
 inline void measure(char const* who, solid& s) {
     vec3 const extent = s.bounds.extent();
     double const size = std::max(extent[0], std::max(extent[1], extent[2]));
@@ -106,12 +106,12 @@ inline void measure(char const* who, solid& s) {
     }
     double const six_volume = pairwise_sum(0, n, [&](std::size_t t) { return six_volumes[t]; });
     double const sum_of_sizes = pairwise_sum(0, n, [&](std::size_t t) { return std::fabs(six_volumes[t]); });
+    require_outward_shells(who, s, six_volumes);
     if (!(std::fabs(six_volume) > volume_noise * sum_of_sizes)) {
         fail<bad_topology>(errc::zero_volume,
                            std::string(who) + ": the surface of " + std::to_string(n) + " triangles encloses no volume",
                            {.value = std::ldexp(six_volume / 6, 3 * exponent), .limit = 0});
     }
-    require_outward_shells(who, s, six_volumes);
     s.volume = std::ldexp(six_volume / 6, 3 * exponent);
     s.area = std::ldexp(pairwise_sum(0, n, [&](std::size_t t) { return double_areas[t]; }) / 2, 2 * exponent);
 }
