@@ -4,9 +4,9 @@
 #define TAFONI_PERCOLATION_SEEPAGE_HPP
 
 #include <tafoni/field/concepts.hpp>
+#include <tafoni/field/constant.hpp>
 #include <tafoni/percolation/gravity_flow.hpp>
 #include <tafoni/rules/roles.hpp>
-#include <tafoni/rules/uniform_resistance.hpp>
 
 namespace tafoni {
 
@@ -22,7 +22,9 @@ struct resistance_role {
 }  // namespace detail
 
 /// A flow policy together with a resistance field (rho in [0, 1], read once per link); models `flow_policy`.
-template <flow_policy Flow = gravity_flow, scalar_field Resistance = uniform_resistance>
+///
+/// The default of 0.5 is a decision: with 1 and full life, 1 - f_r = 0 and no water ever enters.
+template <flow_policy Flow = gravity_flow, scalar_field Resistance = constant_field>
 struct seepage {
     [[no_unique_address]] Flow flow{};
     [[no_unique_address]] Resistance resistance{};
@@ -42,7 +44,7 @@ struct seepage {
 
 template <class... Parts>
 seepage(Parts...) -> seepage<detail::pick_role_t<detail::flow_role, gravity_flow, Parts...>,
-                             detail::pick_role_t<detail::resistance_role, uniform_resistance, Parts...>>;
+                             detail::pick_role_t<detail::resistance_role, constant_field, Parts...>>;
 
 static_assert(flow_policy<seepage<>>);
 

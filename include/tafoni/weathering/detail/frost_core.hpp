@@ -66,7 +66,7 @@ public:
 
     /// rho of every link, checked.
     [[nodiscard]] std::vector<double> resistances(Process const& p) const {
-        std::vector<double> rho(table.size(), uniform_resistance{}.value);
+        std::vector<double> rho(table.size(), constant_field{}.value);
         if constexpr (requires(vec3 const& x) { p.flow.resistance_at(x); }) {
             for (std::size_t i = 0; i < rho.size(); ++i) {
                 link_record const& r = table[link_index{i}];

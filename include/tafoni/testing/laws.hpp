@@ -1,0 +1,9 @@
+/// \file
+/// All law checks: for those who write policies, structures or executors of their own.
+#ifndef TAFONI_TESTING_LAWS_HPP
+#define TAFONI_TESTING_LAWS_HPP
+
+#include <tafoni/testing/policy_laws.hpp>
+#include <tafoni/testing/structure_laws.hpp>
+
+#endif
