@@ -367,7 +367,10 @@ private:
             free_.pop_back();
         } else {
             if constexpr (fixed) {
-                if (planes_ == Planes) return false;
+                if (planes_ == Planes) {
+                    for (std::uint32_t v : removed_) flag_[v] = 0;
+                    return false;
+                }
             }
             p = static_cast<id>(planes_++);
             grow(count_, planes_);
