@@ -63,9 +63,9 @@ namespace tafoni::detail {
                 return vec3{std::ldexp(p[0] - all.lo[0], -exponent), std::ldexp(p[1] - all.lo[1], -exponent),
                             std::ldexp(p[2] - all.lo[2], -exponent)};
             };
-            double const term = dot(local(tri[0]), cross(local(tri[1]), local(tri[2])));
-            sh.six_volume += term;
-            sh.six_size += std::fabs(term);
+            volume_term const term = make_volume_term(local(tri[0]), local(tri[1]), local(tri[2]));
+            sh.six_volume += term.six_volume;
+            sh.six_size += term.size;
         }
     }
     auto const contains = [](shell const& outer, vec3 const& p) {

@@ -16,6 +16,24 @@ namespace tafoni::detail {
 /// A volume below this part of the summed sizes of its terms is rounding, not volume.
 inline constexpr double volume_noise = 64 * 0x1p-53;
 
+/// What a triangle adds to six times the volume, how much rounding that may hold, and twice its area.
+struct volume_term {
+    double six_volume;
+    double size;  ///< sum of the sizes of the products
+    double double_area;
+};
+
+/// The term of one triangle; coordinates relative to a point near the surface and about unit size. O(1).
+[[nodiscard]] inline volume_term make_volume_term(vec3 const& a, vec3 const& b, vec3 const& c) noexcept {
+    vec3 const u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    vec3 const v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    vec3 const n = cross(u, v);
+    double const size = std::fabs(a[0]) * (std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1])) +
+                        std::fabs(a[1]) * (std::fabs(u[2] * v[0]) + std::fabs(u[0] * v[2])) +
+                        std::fabs(a[2]) * (std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]));
+    return {dot(a, n), size, length(n)};
+}
+
 /// Triangles joined through their edges.
 struct shell_table {
     struct shell {
@@ -29,8 +47,8 @@ struct shell_table {
     std::vector<shell> shells{};            ///< by lowest triangle
 };
 
-/// Groups triangles; `six_volumes` are the terms of the volume sum. O(triangles).
-[[nodiscard]] inline shell_table find_shells(solid const& s, std::vector<double> const& six_volumes) {
+/// Groups triangles; `terms` are those of the volume sum. O(triangles).
+[[nodiscard]] inline shell_table find_shells(solid const& s, std::vector<volume_term> const& terms) {
     std::size_t const n = s.triangles.size();
     disjoint_sets sets(n);
     for (std::size_t h = 0; h < s.opposite.size(); ++h) {
@@ -47,8 +65,8 @@ struct shell_table {
             r.shell_of[t] = r.shell_of[root];
         }
         auto& shell = r.shells[r.shell_of[t]];
-        shell.six_volume += six_volumes[t];
-        shell.six_size += std::fabs(six_volumes[t]);
+        shell.six_volume += terms[t].six_volume;
+        shell.six_size += terms[t].size;
         for (std::uint32_t const v : s.triangles[t]) {
             vec3 const& p = s.positions[v];
             shell.bounds.include(p);
@@ -60,8 +78,8 @@ struct shell_table {
 
 /// Throws `inverted_orientation` for a shell of negative volume that lies inside no other shell.
 /// Shells without volume may face either way. O(triangles), plus O(triangles) per inward shell.
-inline void require_outward_shells(char const* who, solid const& s, std::vector<double> const& six_volumes) {
-    shell_table const table = find_shells(s, six_volumes);
+inline void require_outward_shells(char const* who, solid const& s, std::vector<volume_term> const& terms) {
+    shell_table const table = find_shells(s, terms);
     std::size_t inverted = 0;
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < table.shells.size(); ++i) {

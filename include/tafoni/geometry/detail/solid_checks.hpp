@@ -92,28 +92,21 @@ inline void measure(char const* who, solid& s) {
                     std::ldexp(p[2] - origin[2], -exponent)};
     };
     std::size_t const n = s.triangles.size();
-    std::vector<double> six_volumes(n);
-    std::vector<double> double_areas(n);
+    std::vector<volume_term> terms(n);
     for (std::size_t t = 0; t < n; ++t) {
         auto const& tri = s.triangles[t];
-        vec3 const a = local(tri[0]);
-        vec3 const b = local(tri[1]);
-        vec3 const c = local(tri[2]);
-        six_volumes[t] = dot(a, cross(b, c));
-        vec3 const u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-        vec3 const v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-        double_areas[t] = length(cross(u, v));
+        terms[t] = make_volume_term(local(tri[0]), local(tri[1]), local(tri[2]));
     }
-    double const six_volume = pairwise_sum(0, n, [&](std::size_t t) { return six_volumes[t]; });
-    double const sum_of_sizes = pairwise_sum(0, n, [&](std::size_t t) { return std::fabs(six_volumes[t]); });
-    require_outward_shells(who, s, six_volumes);
-    if (!(std::fabs(six_volume) > volume_noise * sum_of_sizes)) {
+    double const six_volume = pairwise_sum(0, n, [&](std::size_t t) { return terms[t].six_volume; });
+    double const size_of_terms = pairwise_sum(0, n, [&](std::size_t t) { return terms[t].size; });
+    require_outward_shells(who, s, terms);
+    if (!(std::fabs(six_volume) > volume_noise * size_of_terms)) {
         fail<bad_topology>(errc::zero_volume,
                            std::string(who) + ": the surface of " + std::to_string(n) + " triangles encloses no volume",
                            {.value = std::ldexp(six_volume / 6, 3 * exponent), .limit = 0});
     }
     s.volume = std::ldexp(six_volume / 6, 3 * exponent);
-    s.area = std::ldexp(pairwise_sum(0, n, [&](std::size_t t) { return double_areas[t]; }) / 2, 2 * exponent);
+    s.area = std::ldexp(pairwise_sum(0, n, [&](std::size_t t) { return terms[t].double_area; }) / 2, 2 * exponent);
 }
 
 }  // namespace tafoni::detail
