@@ -48,8 +48,8 @@ template <class Network>
 }
 
 /// Options, the `parameters()` of all policies that have them, and the resistance as read. O(links).
-template <class Network, class Process>
-[[nodiscard]] std::uint64_t parameter_hash(frost_core<Network, Process> const& core) {
+template <class Network, class Process, class Exposure>
+[[nodiscard]] std::uint64_t parameter_hash(frost_core<Network, Process, Exposure> const& core) {
     number_hash h;
     h.add(core.options.water);
     h.add(core.options.seed);
@@ -119,12 +119,13 @@ inline constexpr std::uint64_t checkpoint_version = 1;
     return h.value();
 }
 
-/// Magic, version, hash of the network, hash of the parameters, counters, cells, marks, lives, blocks, hash.
-template <class Network, class Process>
-[[nodiscard]] std::vector<std::byte> write_checkpoint(frost_core<Network, Process> const& core) {
+/// Magic, version, hash of the network, hash of the parameters, counters, cells, marks, link states, lives,
+/// blocks, hash.
+template <class Network, class Process, class Exposure>
+[[nodiscard]] std::vector<std::byte> write_checkpoint(frost_core<Network, Process, Exposure> const& core) {
     frost_state const& s = core.state;
     byte_writer out;
-    out.reserve(256 + s.cells.size() * 2 + core.table.size() * 8);
+    out.reserve(256 + s.cells.size() * 2 + core.table.size() * 9);
     out.put(checkpoint_magic);
     out.put(checkpoint_version, 4);
     out.put(network_hash(core.table, s.volumes));
@@ -137,6 +138,7 @@ template <class Network, class Process>
     for (wide_int const v : {c.water.inflow, c.water.absorbed, c.water.lost, c.water.drained}) out.put(v);
     for (cell_state const v : s.cells) out.put(static_cast<std::uint64_t>(v), 1);
     for (cell_state const v : s.marks) out.put(static_cast<std::uint64_t>(v), 1);
+    for (link_state const v : core.states) out.put(static_cast<std::uint64_t>(v), 1);
     for (std::size_t i = 0; i < core.table.size(); ++i) {
         out.put(std::bit_cast<std::uint64_t>(core.table[link_index{i}].life));
     }
@@ -151,8 +153,8 @@ template <class Network, class Process>
 }
 
 /// Reads all, checks all, and only then changes `core`.
-template <class Network, class Process>
-void read_checkpoint(frost_core<Network, Process>& core, std::span<std::byte const> bytes) {
+template <class Network, class Process, class Exposure>
+void read_checkpoint(frost_core<Network, Process, Exposure>& core, std::span<std::byte const> bytes) {
     auto const bad = [](char const* why) {
         fail<io_error>(errc::bad_syntax, std::string("frost_run::resume: ") + why);
     };
@@ -185,6 +187,12 @@ void read_checkpoint(frost_core<Network, Process>& core, std::span<std::byte con
             v = static_cast<cell_state>(b);
         }
     }
+    std::vector<link_state> states(core.table.size());
+    for (link_state& v : states) {
+        std::uint64_t const b = in.get(1);
+        if (b > static_cast<std::uint64_t>(link_state::gone)) bad("a link state is out of range");
+        v = static_cast<link_state>(b);
+    }
     std::vector<double> lives(core.table.size());
     for (double& v : lives) {
         v = std::bit_cast<double>(in.get());
@@ -212,6 +220,7 @@ void read_checkpoint(frost_core<Network, Process>& core, std::span<std::byte con
     if (in.left() != 0) bad("bytes follow the end");
     core.dirty = true;
     std::swap(core.state, s);
+    core.states.swap(states);
     for (std::size_t i = 0; i < lives.size(); ++i) core.table[link_index{i}].life = lives[i];
     core.rebuild();
 }

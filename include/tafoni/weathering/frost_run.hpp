@@ -4,11 +4,13 @@
 #define TAFONI_WEATHERING_FROST_RUN_HPP
 
 #include <tafoni/core/executor.hpp>
+#include <tafoni/graph/air_flood.hpp>
 #include <tafoni/weathering/detail/frost_core.hpp>
 #include <tafoni/weathering/frost_checkpoint.hpp>
 #include <tafoni/weathering/frost_report.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <span>
@@ -27,15 +29,15 @@ namespace tafoni {
 ///
 /// When anything throws (a policy, an observer, the allocator), the state is that after the last
 /// complete batch and the run can go on.
-template <link_network Network, class Process = frost_wedging<>>
+template <link_network Network, class Process = frost_wedging<>, exposure_policy Exposure = air_flood>
 class frost_run {
 public:
     /// Every cell solid, every bond whole. O(links x Neigh + cells).
     /// \throws invalid_input  for policies or options out of range, a resistance outside [0, 1], or a
     ///                        network whose areas, centroids or volumes are not finite and positive.
-    explicit frost_run(Network const& network, Process process = {}, frost_options options = {})
-        : core_(network, checked(std::move(process)), checked(options)) {}
-    explicit frost_run(Network const&&, Process = {}, frost_options = {}) = delete;
+    explicit frost_run(Network const& network, Process process = {}, frost_options options = {}, Exposure exposure = {})
+        : core_(network, checked(std::move(process)), checked(options), std::move(exposure)) {}
+    explicit frost_run(Network const&&, Process = {}, frost_options = {}, Exposure = {}) = delete;
 
     /// Adds `schedule.paths` paths.
     ///
@@ -113,11 +115,6 @@ public:
     [[nodiscard]] link_view view(link_index l) const { return core_.table.view(l); }
     /// What fell, in order.
     [[nodiscard]] std::span<detached_block const> blocks() const noexcept { return core_.state.blocks; }
-    /// Air that the outside reaches.
-    [[nodiscard]] bool open(cell_index c) const noexcept {
-        return core_.state.cells[c.value] == cell_state::air && core_.flood.open(c);
-    }
-
     /// Walks path number `path` over the present state without changing it: for looking.
     [[nodiscard]] path_trace trace(std::uint64_t path, std::vector<path_visit>& visits) const {
         path_scratch memory;
@@ -171,11 +168,9 @@ public:
         if (core_.dirty) core_.rebuild();
         std::size_t const before = core_.state.blocks.size();
         core_.transact([&] {
-            std::uint64_t cores = 0;
-            for (std::uint32_t id = 0; id < core_.parts.size(); ++id) cores += core_.parts[id].cores;
-            if (cores == 0) return;
-            for (std::uint32_t id = 0; id < core_.parts.size(); ++id) {
-                if (core_.parts[id].cells > 0 && core_.parts[id].cores == 0) core_.fall(id);
+            if (std::find(core_.state.cells.begin(), core_.state.cells.end(), cell_state::core) !=
+                core_.state.cells.end()) {
+                core_.drop_coreless();
             }
         });
         return core_.state.blocks.size() - before;
@@ -203,6 +198,7 @@ public:
             r.life = r.cells[1].valid() ? 1.0 : 0.0;
         }
         core_.state.reset();
+        std::fill(core_.states.begin(), core_.states.end(), link_state::bonded);
         seconds_ = {};
         core_.detach_seconds = 0;
         stopped_ = stop_reason::finished;
@@ -254,7 +250,7 @@ private:
         return options;
     }
 
-    detail::frost_core<Network, Process> core_;
+    detail::frost_core<Network, Process, Exposure> core_;
     frost_report::stage_seconds seconds_{};
     stop_reason stopped_ = stop_reason::finished;
 };

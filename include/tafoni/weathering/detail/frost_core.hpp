@@ -3,16 +3,18 @@
 #ifndef TAFONI_WEATHERING_DETAIL_FROST_CORE_HPP
 #define TAFONI_WEATHERING_DETAIL_FROST_CORE_HPP
 
+#include <tafoni/field/constant.hpp>
+#include <tafoni/graph/connectivity.hpp>
+#include <tafoni/graph/exposure.hpp>
 #include <tafoni/percolation/entry_tree.hpp>
 #include <tafoni/percolation/link_table.hpp>
 #include <tafoni/percolation/percolate.hpp>
-#include <tafoni/weathering/detail/air_flood.hpp>
-#include <tafoni/weathering/detail/bond_parts.hpp>
 #include <tafoni/weathering/detail/frost_state.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,12 +43,19 @@ template <class Absorb>
     }
 }
 
+/// Whether the rule lets parts with core cells stand, so that searches may stop where both sides have one.
+template <class Wear>
+inline constexpr bool cores_stand = false;
+template <class Damage, class Breakage>
+inline constexpr bool cores_stand<wear<Damage, Breakage, smaller_part_falls>> = true;
+
 /// State and derived structures of `frost_run`, whose members document them.
-template <class Network, class Process>
+template <class Network, class Process, class Exposure>
 class frost_core {
 public:
-    frost_core(Network const& network, Process p, frost_options const& o)
-        : table(network), process(std::move(p)), options(o), state(network) {
+    frost_core(Network const& network, Process p, frost_options const& o, Exposure e)
+        : table(network), process(std::move(p)), options(o), exposure(std::move(e)), state(network),
+          states(network.link_count(), link_state::bonded) {
         areas_ = pairwise_sum(0, table.size(), [&](std::size_t i) { return table[link_index{i}].area; });
         install(resistances(process));
         rescale(options);
@@ -56,11 +65,12 @@ public:
     link_table<Network> table;
     Process process;
     frost_options options;
+    Exposure exposure;
     link_scale scale{};
     frost_state state;
+    std::vector<link_state> states;  ///< per link; the table holds a copy beside what the walk reads
     entry_tree skin{};
-    air_flood<Network> flood{};
-    bond_parts<Network> parts{};
+    connectivity bonds{};
     double detach_seconds = 0;
     bool dirty = false;  ///< derived structures do not follow the state; `rebuild` mends it
 
@@ -100,17 +110,24 @@ public:
                 .longest_path = options.longest_path};
     }
 
-    /// Derives link states, entries, parts and exposure from lives and cells. O(links + cells).
+    /// Derives link states, entries, parts and exposure from lives, cells and former states. O(links + cells).
     void rebuild() {
         dirty = true;
         scratch_.clear();
-        flood.rebuild(table.network(), state.cells);
-        entry_tree fresh(table.size());
-        skin = std::move(fresh);
-        for (std::size_t i = 0; i < table.size(); ++i) {
-            if (table.network().has_link(link_index{i})) refresh(link_index{i});
+        Network const& network = table.network();
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            link_record const& r = table[link_index{i}];
+            if (!r.cells[1].valid() || is_air(r.cells[0]) || is_air(r.cells[1])) continue;
+            states[i] = r.life > 0 ? link_state::bonded : link_state::broken;
         }
-        parts.rebuild(table, state.cells, state.volumes);
+        exposure_memory_.emplace(exposure.start(network, state.cells, states));
+        skin = entry_tree(table.size());
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            if (network.has_link(link_index{i})) refresh(link_index{i});
+        }
+        bonds = connectivity(network, state.cells, [this](link_index l) { return states[l.value] == link_state::bonded; },
+                             {.when_both_hold_core = cores_stand<decltype(process.wear)> ? two_cores::stop
+                                                                                        : two_cores::search});
         dirty = false;
     }
 
@@ -157,6 +174,7 @@ public:
         undo_.clear();
         broken_.clear();
         fallen_.clear();
+        former_.clear();
         frost_counters const before = state.count;
         std::size_t const blocks = state.blocks.size();
         try {
@@ -164,6 +182,7 @@ public:
         } catch (...) {
             for (std::size_t k = undo_.size(); k-- > 0;) table[undo_[k].link].life = undo_[k].life;
             for (auto const& [cell, was] : fallen_) state.cells[cell.value] = was;
+            for (std::size_t k = former_.size(); k-- > 0;) states[former_[k].first.value] = former_[k].second;
             state.count = before;
             state.blocks.resize(blocks);
             dirty = true;
@@ -180,57 +199,54 @@ public:
         undo_.push_back({l, table[l].life});
         broken_.push_back(l);
         link_record& r = table[l];
+        former_.push_back({l, states[l.value]});
         r.life = 0;
-        r.state = link_state::broken;
+        r.state = states[l.value] = link_state::broken;
         ++state.count.links_broken;
     }
 
     /// One connectivity check for all bonds broken since; parts that the rule drops become air.
     void settle() {
         auto const start = std::chrono::steady_clock::now();
-        touched_.clear();
-        for (link_index const l : broken_) {
-            auto const ends = table[l].cells;
-            std::uint32_t made = 0;
-            if (!parts.cut(table, ends[0], ends[1], state.cells, state.volumes, made)) continue;
-            std::uint32_t const origin = parts[made].origin;
-            if (std::find(touched_.begin(), touched_.end(), origin) == touched_.end()) touched_.push_back(origin);
-            touched_.push_back(made);
-        }
-        // Among the pieces of one part the rule is asked pair by pair against the one that stands so far.
-        for (std::size_t k = 0; k < touched_.size(); ++k) {
-            std::uint32_t const origin = parts[touched_[k]].origin;
-            if (touched_[k] != origin) continue;
-            std::uint32_t stands = origin;
-            for (std::uint32_t const other : touched_) {
-                if (other == origin || parts[other].origin != origin) continue;
-                if (stands == parts.none) {
-                    stands = other;
+        auto const found = bonds.break_links(table.network(), broken_);
+        fragments_.assign(found.begin(), found.end());
+        verdicts_.assign(fragments_.size(), 0);
+        // Among the fragments of one part the rule is asked pair by pair, against the one that stands so far.
+        for (std::size_t begin = 0; begin < fragments_.size();) {
+            std::size_t const none = fragments_.size();
+            std::size_t stands = none;
+            std::size_t end = begin;
+            for (; end < fragments_.size() && fragments_[end].group == fragments_[begin].group; ++end) {
+                if (stands == none) {
+                    stands = end;
                     continue;
                 }
-                part const a = parts.view(stands);
-                part const b = parts.view(other);
-                falling const verdict = process.wear.decide(a, b);
+                falling const verdict = process.wear.decide(fragments_[stands].totals, fragments_[end].totals);
                 bool const first = verdict == falling::first || verdict == falling::both;
                 bool const second = verdict == falling::second || verdict == falling::both;
-                if (second) parts[other].falls = true;
-                if (first) parts[stands].falls = true;
-                if (first) stands = second ? parts.none : other;
+                if (first) verdicts_[stands] = 1;
+                if (second) verdicts_[end] = 1;
+                if (first) stands = second ? none : end;
             }
+            begin = end;
         }
-        for (std::uint32_t const id : touched_) {
-            if (parts[id].falls) fall(id);
+        for (std::size_t k = 0; k < fragments_.size(); ++k) {
+            if (verdicts_[k] != 0) fall(fragments_[k].component);
         }
-        for (std::uint32_t const id : touched_) parts[id].origin = id;
         detach_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
-    /// Component `id` becomes air. Call inside `transact`.
-    void fall(std::uint32_t id) {
-        state.blocks.push_back({state.count.paths, parts.cells_of(table, id), 0});
+    /// A component becomes air. Call inside `transact`.
+    void fall(std::uint32_t component) {
+        auto const cells = bonds.cells_of(component);
+        state.blocks.push_back({state.count.paths, {cells.begin(), cells.end()}, 0});
         detached_block& block = state.blocks.back();
-        std::int64_t volume = 0;
+        Network const& network = table.network();
         fallen_.reserve(fallen_.size() + block.cells.size());
+        for (cell_index const c : block.cells) {
+            network.for_each_cell_link(c, [this](link_index l) { former_.push_back({l, states[l.value]}); });
+        }
+        std::int64_t volume = 0;
         for (cell_index const c : block.cells) {
             fallen_.push_back({c, state.cells[c.value]});
             state.cells[c.value] = cell_state::air;
@@ -239,13 +255,28 @@ public:
         block.volume = from_fixed(volume, state.total_volume);
         state.count.volume_detached += volume;
         state.count.cells_detached += block.cells.size();
-        parts.drop(id, block.cells);
-        auto const again = [this](cell_index c) {
-            table.network().for_each_cell_link(c, [this](link_index l) { refresh(l); });
-        };
-        flood.fell(table.network(), state.cells, block.cells, again);
-        for (cell_index const c : block.cells) again(c);
+        bonds.remove_component(component);
+        exposure.update(network, state.cells, block.cells, *exposure_memory_, states, change_);
+        for (cell_index const c : block.cells) {
+            network.for_each_cell_link(c, [this](link_index l) { refresh(l); });
+        }
+        for (link_index const l : change_.opened) {
+            former_.push_back({l, table[l].state});
+            refresh(l);
+        }
+        for (link_index const l : change_.closed) refresh(l);
     }
+
+    /// Lets fall every part without core cells. O(cells) and what falls.
+    void drop_coreless() {
+        for (std::size_t c = 0; c < state.cells.size(); ++c) {
+            if (is_air(cell_index{c})) continue;
+            std::uint32_t const component = bonds.component_of(cell_index{c});
+            if (bonds.totals(component).core_cells == 0) fall(component);
+        }
+    }
+
+    [[nodiscard]] bool is_air(cell_index c) const noexcept { return state.cells[c.value] == cell_state::air; }
 
 private:
     struct group {
@@ -296,22 +327,11 @@ private:
         }
     }
 
-    /// State and entry weight of a link from its life, its cells and the flood.
-    void refresh(link_index l) {
+    /// Copies a link's state into the table and sets its weight as an entry.
+    void refresh(link_index l) noexcept {
         link_record& r = table[l];
-        bool const first = state.cells[r.cells[0].value] != cell_state::air;
-        bool const inside = r.cells[1].valid();
-        bool const second = inside && state.cells[r.cells[1].value] != cell_state::air;
-        r.inward = !first && second;
-        if (!first && !second) {
-            r.state = link_state::gone;
-        } else if (first && second) {
-            r.state = r.life > 0 ? link_state::bonded : link_state::broken;
-        } else if (!inside) {
-            r.state = link_state::skin;
-        } else {
-            r.state = flood.open(r.cells[first ? 1 : 0]) ? link_state::skin : link_state::pocket;
-        }
+        r.state = states[l.value];
+        r.inward = r.cells[1].valid() && is_air(r.cells[0]) && !is_air(r.cells[1]);
         skin.set(l, r.state == link_state::skin ? std::max<std::int64_t>(1, to_fixed(r.area, areas_)) : 0);
     }
 
@@ -321,7 +341,11 @@ private:
     std::vector<old_life> undo_{};
     std::vector<link_index> broken_{};
     std::vector<std::pair<cell_index, cell_state>> fallen_{};
-    std::vector<std::uint32_t> touched_{};
+    std::vector<std::pair<link_index, link_state>> former_{};
+    std::vector<fragment> fragments_{};
+    std::vector<std::uint8_t> verdicts_{};
+    std::optional<typename Exposure::state> exposure_memory_{};
+    exposure_change change_{};
 };
 
 }  // namespace tafoni::detail
