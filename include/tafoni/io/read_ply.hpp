@@ -86,7 +86,7 @@ private:
                     skip_list(p);
                     continue;
                 }
-                char const* const place = at_;
+                char const* const place = next_value();
                 double const value = scalar(p.type);
                 if (role[k] >= 3) {
                     out_.attributes.vertex_channels[role[k] - 3].values.push_back(value);
@@ -145,7 +145,7 @@ private:
     }
 
     void read_corners(ply_property const& p, std::uint64_t face) {
-        char const* const start = at_;
+        char const* const start = next_value();
         std::uint64_t const n = list_length(p);
         if (n < 3) {
             at_ = start;
@@ -154,7 +154,7 @@ private:
                       {.kind = entity::face, .index = face, .value = static_cast<double>(n), .limit = 3});
         }
         for (std::uint64_t k = 0; k < n; ++k) {
-            char const* const place = at_;
+            char const* const place = next_value();
             double const corner = scalar(p.type);
             if (!(corner >= 0 && corner < static_cast<double>(vertex_count_))) {
                 at_ = place;
@@ -196,7 +196,7 @@ private:
 
     /// The length of a list, which the bytes that are left can hold.
     std::uint64_t list_length(ply_property const& p) {
-        char const* const place = at_;
+        char const* const place = next_value();
         double const n = scalar(p.count_type);
         double const item = ascii ? 2 : static_cast<double>(size_of(p.type));
         if (!(n >= 0 && n * item <= static_cast<double>(end_ - at_) + 1)) {
@@ -267,8 +267,16 @@ private:
         return value;
     }
 
+    /// Where the next value starts.
+    char const* next_value() {
+        if constexpr (ascii) {
+            while (at_ != end_ && is_blank(*at_)) ++at_;
+        }
+        return at_;
+    }
+
     double text_scalar(channel_type type) {
-        while (at_ != end_ && is_blank(*at_)) ++at_;
+        static_cast<void>(next_value());
         if (at_ == end_) fail_here(errc::truncated, "expected a number");
         if (is_integer(type)) {
             parsed_integer const r = parse_integer(at_, end_);

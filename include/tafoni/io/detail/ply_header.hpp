@@ -117,7 +117,7 @@ private:
         if (word() != "tafoni" || word() != "origin") return;
         for (int axis = 0; axis < 3; ++axis) {
             std::string_view const text = word();
-            parsed_number const r = parse_double(text.data(), text.data() + text.size());
+            parsed_number const r = parse_float(text.data(), text.data() + text.size());
             if (r.state != number_state::ok || r.next != text.data() + text.size() || !std::isfinite(r.value)) {
                 fail_here(errc::bad_number, "expected the origin's three finite numbers");
             }
