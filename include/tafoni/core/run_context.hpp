@@ -6,6 +6,7 @@
 #include <tafoni/core/error.hpp>
 
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace tafoni {
@@ -26,7 +27,9 @@ struct run_context {
     /// Reports; throws `cancelled` when the observer says stop. For algorithms whose part results are of no use.
     void tick(std::string_view stage, double fraction) const {
         if (on_progress && on_progress({stage, fraction}) == step_control::stop) {
-            detail::fail<cancelled>(errc::cancelled, std::string(stage) + ": cancelled");
+            std::string what(stage);
+            what += ": cancelled";
+            detail::fail<cancelled>(errc::cancelled, what);
         }
     }
 };
