@@ -69,7 +69,7 @@ template <polygon_mesh M>
             // Of the rounded corners, so that a file that is read and written again is the same.
             std::array<vec3, 3> stored{a, b, c};
             for (vec3& p : stored) {
-                for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis] - origin[axis]));
+                for (int axis = 0; axis < 3; ++axis) p[axis] = detail::round_to_float(p[axis] - origin[axis]);
             }
             vec3 const u{stored[1][0] - stored[0][0], stored[1][1] - stored[0][1], stored[1][2] - stored[0][2]};
             vec3 const w{stored[2][0] - stored[0][0], stored[2][1] - stored[0][1], stored[2][2] - stored[0][2]};

@@ -4,6 +4,7 @@
 #define TAFONI_IO_DETAIL_FORMAT_NUMBER_HPP
 
 #include <tafoni/core/vector.hpp>
+#include <tafoni/io/detail/parse_number.hpp>
 #include <tafoni/io/mesh_file.hpp>
 
 #include <bit>
@@ -51,8 +52,7 @@ void as_type(channel_type type, double value, F&& f) {
 
 /// The origin as a file records it: rounded to float, whose text is short.
 [[nodiscard]] inline vec3 float_origin(vec3 const& origin) noexcept {
-    return vec3{static_cast<double>(static_cast<float>(origin[0])), static_cast<double>(static_cast<float>(origin[1])),
-                static_cast<double>(static_cast<float>(origin[2]))};
+    return vec3{round_to_float(origin[0]), round_to_float(origin[1]), round_to_float(origin[2])};
 }
 
 inline void append_origin(std::string& out, vec3 const& origin) {
