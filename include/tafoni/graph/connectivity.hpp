@@ -6,6 +6,8 @@
 #include <tafoni/core/sum.hpp>
 #include <tafoni/graph/concepts.hpp>
 #include <tafoni/graph/detail/bond_lists.hpp>
+#include <tafoni/graph/detail/two_sided_search.hpp>
+#include <tafoni/graph/split.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,20 +29,6 @@ enum class two_cores : std::uint8_t {
 
 struct connectivity_options {
     two_cores when_both_hold_core = two_cores::stop;
-};
-
-/// A piece that came off, or what is left of the one it came off from.
-struct fragment {
-    part totals{};
-    std::uint32_t component = 0;  ///< for `cells_of` and `remove_component`
-    std::uint32_t group = 0;      ///< fragments of one former component share it; ascending from 0
-};
-
-/// The two parts that a broken link leaves; the first holds `link_cells(l)[0]`.
-struct split {
-    part first{};
-    part second{};
-    std::array<std::uint32_t, 2> components{};
 };
 
 /// Components of the cells graph while its bonds break [Mateos et al., section 5.3].
@@ -78,9 +66,6 @@ public:
     }
     /// Only for cells that are not removed.
     [[nodiscard]] std::uint32_t component_of(cell_index c) const noexcept { return label_[c.value]; }
-    [[nodiscard]] bool connected(cell_index a, cell_index b) const noexcept {
-        return component_of(a) == component_of(b);
-    }
     /// With `two_cores::stop`, components that hold core cells may count several pieces as one.
     [[nodiscard]] part totals(std::uint32_t component) const noexcept { return as_part(components_[component]); }
     [[nodiscard]] std::size_t cells_in(std::uint32_t component) const noexcept { return components_[component].cells; }
@@ -95,6 +80,7 @@ public:
     std::optional<split> break_link(Network const& n, link_index l) {
         auto const ends = n.link_cells(l);
         if (!ends[1].valid() || ends[0] == ends[1] || !bonds_.remove(l.value, ends[0].value, ends[1].value)) return {};
+        if (bonds_.share_neighbor(ends[0].value, ends[1].value)) return {};
         terminals_.assign({ends[0].value, ends[1].value});
         check();
         if (fragments_.size() < 2) return {};
@@ -140,7 +126,7 @@ public:
     [[nodiscard]] std::span<cell_index const> cells_of(std::uint32_t component) {
         gather(component);
         cells_.clear();
-        for (std::uint32_t const c : queue_[0]) cells_.push_back(cell_index{c});
+        for (std::uint32_t const c : search_.cells(0)) cells_.push_back(cell_index{c});
         std::sort(cells_.begin(), cells_.end());
         return cells_;
     }
@@ -148,7 +134,7 @@ public:
     /// Takes a whole component out: a part that falls. O(its cells).
     void remove_component(std::uint32_t component) {
         gather(component);
-        for (std::uint32_t const c : queue_[0]) {
+        for (std::uint32_t const c : search_.cells(0)) {
             flags_[c] |= removed;
             bonds_.clear(c);
         }
@@ -168,7 +154,7 @@ public:
 
     /// Memory held, in bytes.
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bonds_.bytes() + flags_.capacity() + 8 * volume_.capacity() + 4 * (label_.capacity() + mark_.capacity()) +
+        return bonds_.bytes() + search_.bytes() + flags_.capacity() + 8 * volume_.capacity() + 4 * label_.capacity() +
                components_.capacity() * sizeof(record);
     }
 
@@ -176,7 +162,6 @@ private:
     static constexpr std::uint8_t core = 1;
     static constexpr std::uint8_t removed = 2;
     static constexpr std::uint32_t nothing = cell_index::none;
-
     struct record {
         std::int64_t volume = 0;
         std::uint32_t cells = 0;
@@ -184,76 +169,21 @@ private:
         std::uint32_t seed = nothing;
         bool blurred = false;  ///< may be several pieces, each with core cells
     };
-    enum class outcome : std::uint8_t { met, both_hold_core, first_ended, second_ended };
+    using outcome = detail::two_sided_search::outcome;
 
     [[nodiscard]] static part as_part(record const& k) noexcept { return {k.volume, k.core_cells, cell_index{}}; }
     [[nodiscard]] bool holds_core(std::uint32_t c) const noexcept { return (flags_[c] & core) != 0; }
+    [[nodiscard]] auto wanted() const noexcept { return [this](std::uint32_t c) { return holds_core(c); }; }
 
-    void next_epoch() {
-        if (epoch_ >= 0xFFFFFFF0U) {
-            std::fill(mark_.begin(), mark_.end(), 0U);
-            epoch_ = 0;
-        }
-        epoch_ += 2;
-    }
-
-    void start_side(std::uint32_t side, std::uint32_t c) {
-        queue_[side].assign(1, c);
-        head_[side] = 0;
-        mark_[c] = epoch_ + side;
-        core_found_[side] = holds_core(c);
-    }
-
-    /// Looks at the neighbours of the next cell of a side; true if one belongs to the other side.
-    bool expand(std::uint32_t side) {
-        std::uint32_t const mine = epoch_ + side;
-        std::uint32_t const theirs = epoch_ + 1 - side;
-        for (std::uint32_t const w : bonds_.others(queue_[side][head_[side]])) {
-            if (mark_[w] == mine) continue;
-            if (mark_[w] == theirs) return true;
-            mark_[w] = mine;
-            queue_[side].push_back(w);
-            core_found_[side] = core_found_[side] || holds_core(w);
-        }
-        ++head_[side];
-        return false;
-    }
-
-    [[nodiscard]] outcome search(std::uint32_t a, std::uint32_t b) {
-        next_epoch();
-        start_side(0, a);
-        start_side(1, b);
-        bool const may_stop = options_.when_both_hold_core == two_cores::stop;
-        for (;;) {
-            for (std::uint32_t side = 0; side < 2; ++side) {
-                if (may_stop && core_found_[0] && core_found_[1]) return outcome::both_hold_core;
-                if (head_[side] == queue_[side].size()) return side == 0 ? outcome::first_ended : outcome::second_ended;
-                if (expand(side)) return outcome::met;
-            }
-        }
-    }
-
-    /// Goes on with one side until it holds a core cell (true) or ends.
-    bool reaches_core(std::uint32_t side) {
-        while (!core_found_[side] && head_[side] < queue_[side].size()) expand(side);
-        return core_found_[side];
-    }
-
-    void flood(std::uint32_t from) {
-        next_epoch();
-        start_side(0, from);
-        while (head_[0] < queue_[0].size()) expand(0);
-    }
-
-    /// Fills queue_[0] with the cells of a component.
+    /// Fills side 0 of the search with the cells of a component.
     void gather(std::uint32_t k) {
         if (!components_[k].blurred) {
-            flood(components_[k].seed);
+            search_.flood(bonds_, components_[k].seed);
             return;
         }
-        queue_[0].clear();
+        search_.cells(0).clear();
         for (std::size_t c = 0; c < label_.size(); ++c) {
-            if (label_[c] == k && (flags_[c] & removed) == 0) queue_[0].push_back(static_cast<std::uint32_t>(c));
+            if (label_[c] == k && (flags_[c] & removed) == 0) search_.cells(0).push_back(static_cast<std::uint32_t>(c));
         }
     }
 
@@ -270,9 +200,9 @@ private:
     /// Gives the piece that a side has seen whole a component of its own, out of component k.
     void cut_off(std::uint32_t k, std::uint32_t side) {
         std::uint32_t const fresh = new_component();
-        record piece{.seed = queue_[side].front()};
+        record piece{.seed = search_.cells(side).front()};
         std::uint32_t lowest = nothing;
-        for (std::uint32_t const c : queue_[side]) {
+        for (std::uint32_t const c : search_.cells(side)) {
             label_[c] = fresh;
             piece.volume += volume_[c];
             ++piece.cells;
@@ -290,11 +220,9 @@ private:
     void take_out(std::uint32_t c) {
         if ((flags_[c] & removed) != 0) return;
         flags_[c] |= removed;
-        auto const others = bonds_.others(c);
-        auto const links = bonds_.links(c);
-        for (std::size_t i = 0; i < others.size(); ++i) {
-            bonds_.remove_end(links[i], others[i]);
-            terminals_.push_back(others[i]);
+        for (auto const& b : bonds_.of(c)) {
+            bonds_.remove_end(b.link, b.other);
+            terminals_.push_back(b.other);
         }
         bonds_.clear(c);
         record& k = components_[label_[c]];
@@ -341,18 +269,19 @@ private:
                 core_known = false;
                 continue;
             }
-            outcome const o = search(rest, t);
-            std::size_t const visited = queue_[0].size() + queue_[1].size();
-            budget -= std::min(budget, visited);
+            if (bonds_.share_neighbor(rest, t)) continue;
+            bool const may_stop = options_.when_both_hold_core == two_cores::stop;
+            outcome const o = search_.run(bonds_, rest, t, may_stop, wanted());
+            budget -= std::min(budget, search_.visited());
             if (o == outcome::met) continue;
-            if (o == outcome::both_hold_core) {
+            if (o == outcome::both_found) {
                 components_[k].blurred = true;
                 core_known = true;
                 continue;
             }
             std::uint32_t const ended = o == outcome::first_ended ? 0 : 1;
             std::uint32_t const other = 1 - ended;
-            bool const alive = !components_[k].blurred || reaches_core(other);
+            bool const alive = !components_[k].blurred || search_.reaches(bonds_, other, wanted());
             cut_off(k, ended);
             core_known = alive && components_[k].blurred;
             if (ended == 0) rest = t;
@@ -364,7 +293,8 @@ private:
         if (i < terminals.size()) {
             for (std::uint32_t const t : terminals) cut_off_piece_of(t, k);
             rest = nothing;
-        } else if (rest != nothing && components_[k].blurred && !core_known && !holds_core_near(rest)) {
+        } else if (rest != nothing && components_[k].blurred && !core_known &&
+                   !search_.reaches_from(bonds_, rest, wanted())) {
             cut_off(k, 0);
             rest = nothing;
         }
@@ -373,14 +303,8 @@ private:
 
     void cut_off_piece_of(std::uint32_t c, std::uint32_t k) {
         if (label_[c] != k) return;
-        flood(c);
+        search_.flood(bonds_, c);
         cut_off(k, 0);
-    }
-
-    [[nodiscard]] bool holds_core_near(std::uint32_t c) {
-        next_epoch();
-        start_side(0, c);
-        return reaches_core(0);
     }
 
     /// Books what keeps the name k, or forgets the group if nothing came apart.
@@ -406,13 +330,13 @@ private:
         }
         if (!tie) return;
         gather(k);
-        fragments_.back().totals.lowest_cell = cell_index{*std::min_element(queue_[0].begin(), queue_[0].end())};
+        fragments_.back().totals.lowest_cell = cell_index{*std::min_element(search_.cells(0).begin(), search_.cells(0).end())};
     }
 
     /// Makes every piece of a component one of its own.
     void separate(std::uint32_t k) {
         gather(k);
-        terminals_ = queue_[0];
+        terminals_ = search_.cells(0);
         for (std::uint32_t const c : terminals_) cut_off_piece_of(c, k);
         components_[k] = {};
         free_.push_back(k);
@@ -425,14 +349,10 @@ private:
     std::vector<std::uint8_t> flags_{};
     std::vector<std::int64_t> volume_{};   ///< per cell, fixed point
     std::vector<std::uint32_t> label_{};   ///< per cell: its component
-    std::vector<std::uint32_t> mark_{};    ///< per cell: the search and side that saw it last
     std::vector<record> components_{};
     std::vector<std::uint32_t> free_{};
-    std::uint32_t epoch_ = 0;
     std::uint32_t group_ = 0;
-    std::array<std::vector<std::uint32_t>, 2> queue_{};
-    std::array<std::size_t, 2> head_{};
-    std::array<bool, 2> core_found_{};
+    detail::two_sided_search search_{};
     std::vector<std::uint32_t> terminals_{};
     std::vector<fragment> fragments_{};
     std::vector<cell_index> cells_{};
@@ -444,11 +364,8 @@ connectivity::connectivity(Network const& n, std::span<cell_state const> cells, 
     : options_(options) {
     std::size_t const count = n.cell_count();
     if (!cells.empty() && cells.size() != count) {
-        detail::fail<invalid_input>(errc::attribute_length,
-                                    "connectivity: got " + std::to_string(cells.size()) + " cell states for " +
-                                        std::to_string(count) + " cells",
-                                    {.kind = entity::cell, .value = static_cast<double>(cells.size()),
-                                     .limit = static_cast<double>(count)});
+        detail::fail<invalid_input>(errc::attribute_length, "connectivity: got " + std::to_string(cells.size()) +
+                                                                " cell states for " + std::to_string(count) + " cells");
     }
     scale_ = pairwise_sum(0, count, [&](std::size_t c) { return n.cell_volume(cell_index{c}); });
     flags_.assign(count, 0);
@@ -462,12 +379,12 @@ connectivity::connectivity(Network const& n, std::span<cell_state const> cells, 
         return !is_removed(ends[0]) && !is_removed(ends[1]) && bonded(l);
     });
     label_.assign(count, nothing);
-    mark_.assign(count, 0);
+    search_ = detail::two_sided_search(count);
     for (std::size_t c = 0; c < count; ++c) {
         if (label_[c] != nothing || (flags_[c] & removed) != 0) continue;
-        flood(static_cast<std::uint32_t>(c));
+        search_.flood(bonds_, static_cast<std::uint32_t>(c));
         record k{.seed = static_cast<std::uint32_t>(c)};
-        for (std::uint32_t const m : queue_[0]) {
+        for (std::uint32_t const m : search_.cells(0)) {
             label_[m] = static_cast<std::uint32_t>(components_.size());
             k.volume += volume_[m];
             ++k.cells;

@@ -78,8 +78,7 @@ private:
                 a_.centroids[f] = m.centroid;
                 a_.normals[f] = m.area;
                 if (c_.face_cells(face)[1].valid()) {
-                    box3 box;
-                    if (!(length(m.area) > limit_ * extend_by_face(c_, face, box))) label_[f] = transparent;
+                    if (!(length(m.area) > limit_ * m.diagonal)) label_[f] = transparent;
                 } else {
                     label_[f] = blocked;
                 }
@@ -284,50 +283,55 @@ private:
         return {b.neighbors.data() + begin, b.neighbors_end[slot] - begin};
     }
 
-    /// Visits the union of what a link sees in both of its cells, ascending.
-    template <class Use>
-    void for_each_united(std::size_t l, Use const& use) const {
+    /// Appends the union of what a link sees in both of its cells, ascending.
+    void unite(std::size_t l, std::vector<link_index>& out) const {
         std::size_t const interior = a_.cells.size();
         link_index const link{l};
         std::uint32_t const front = l < interior ? a_.cells[l][0] : a_.skin_cells[l - interior];
         std::span<link_index const> const a = inside(link, front);
         std::span<link_index const> b;
         if (l < interior && a_.cells[l][1] != front) b = inside(link, a_.cells[l][1]);
+        std::size_t const before = out.size();
+        out.resize(before + a.size() + b.size());
+        link_index* to = out.data() + before;
         std::size_t i = 0;
         std::size_t j = 0;
-        while (i < a.size() || j < b.size()) {
-            bool const take_a = j == b.size() || (i < a.size() && a[i] <= b[j]);
-            link_index const next = take_a ? a[i] : b[j];
-            if (i < a.size() && a[i] == next) ++i;
-            if (j < b.size() && b[j] == next) ++j;
-            use(next);
+        while (i < a.size() && j < b.size()) {
+            std::uint32_t const x = a[i].value;
+            std::uint32_t const y = b[j].value;
+            *to++ = link_index{x < y ? x : y};
+            i += x <= y ? 1U : 0U;
+            j += y <= x ? 1U : 0U;
         }
+        to = std::copy(a.begin() + static_cast<std::ptrdiff_t>(i), a.end(), to);
+        to = std::copy(b.begin() + static_cast<std::ptrdiff_t>(j), b.end(), to);
+        out.resize(static_cast<std::size_t>(to - out.data()));
     }
 
     void join_both_sides() {
         std::size_t const links = a_.centroids.size();
-        std::vector<std::uint32_t>& begin = a_.neighbor_begin;
-        begin.assign(links + 1, 0);
-        threads_.for_blocks(links, 4 * grain, [&](std::size_t first, std::size_t last) {
+        std::size_t const step = 4 * grain;
+        std::vector<std::vector<link_index>> joined((links + step - 1) / step);
+        a_.neighbor_begin.assign(links + 1, 0);
+        threads_.for_blocks(links, step, [&](std::size_t first, std::size_t last) {
+            std::vector<link_index>& out = joined[first / step];
+            out.reserve(16 * (last - first));
             for (std::size_t l = first; l < last; ++l) {
-                std::uint32_t count = 0;
-                for_each_united(l, [&](link_index) { ++count; });
-                begin[l + 1] = count;
+                unite(l, out);
+                a_.neighbor_begin[l + 1] = static_cast<std::uint32_t>(out.size());
             }
         });
+        blocks_ = {};
         std::size_t total = 0;
-        for (std::size_t l = 0; l < links; ++l) {
-            total += begin[l + 1];
-            require_indexable("make_link_graph: pairs of neighbours", total);
-            begin[l + 1] = static_cast<std::uint32_t>(total);
+        for (auto const& block : joined) total += block.size();
+        require_indexable("make_link_graph: pairs of neighbours", total);
+        a_.neighbors.reserve(total);
+        for (std::size_t b = 0; b < joined.size(); ++b) {
+            auto const before = static_cast<std::uint32_t>(a_.neighbors.size());
+            for (std::size_t l = b * step; l < std::min((b + 1) * step, links); ++l) a_.neighbor_begin[l + 1] += before;
+            a_.neighbors.insert(a_.neighbors.end(), joined[b].begin(), joined[b].end());
+            joined[b] = {};
         }
-        a_.neighbors.resize(total);
-        threads_.for_blocks(links, 4 * grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t l = first; l < last; ++l) {
-                std::size_t at = begin[l];
-                for_each_united(l, [&](link_index n) { a_.neighbors[at++] = n; });
-            }
-        });
     }
 
     Complex const& c_;

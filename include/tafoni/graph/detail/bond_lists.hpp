@@ -5,7 +5,6 @@
 
 #include <tafoni/core/index.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,37 +17,35 @@ class bond_lists {
 public:
     bond_lists() = default;
 
+    struct bond {
+        std::uint32_t other;
+        std::uint32_t link;
+    };
+
     /// Keeps the interior links for which `keep(l, cells)` holds. O(cells + links).
     template <class Network, class Keep>
     bond_lists(Network const& n, Keep const& keep) {
         std::size_t const cells = n.cell_count();
-        begin_.reserve(cells + 1);
-        begin_.push_back(0);
+        lists_.reserve(cells);
         for (std::size_t c = 0; c < cells; ++c) {
+            auto const begin = static_cast<std::uint32_t>(bonds_.size());
             n.for_each_cell_link(cell_index{c}, [&](link_index l) {
                 auto const ends = n.link_cells(l);
                 if (!ends[1].valid() || ends[0] == ends[1] || !keep(l, ends)) return;
-                others_.push_back(ends[0].value == c ? ends[1].value : ends[0].value);
-                links_.push_back(l.value);
+                bonds_.push_back({ends[0].value == c ? ends[1].value : ends[0].value, l.value});
             });
-            require_indexable("connectivity: ends of bonds", others_.size());
-            begin_.push_back(static_cast<std::uint32_t>(others_.size()));
+            require_indexable("connectivity: ends of bonds", bonds_.size());
+            lists_.push_back({begin, static_cast<std::uint32_t>(bonds_.size()) - begin});
         }
-        others_.shrink_to_fit();
-        links_.shrink_to_fit();
-        degree_.resize(cells);
-        for (std::size_t c = 0; c < cells; ++c) degree_[c] = begin_[c + 1] - begin_[c];
+        bonds_.shrink_to_fit();
     }
 
-    [[nodiscard]] std::span<std::uint32_t const> others(std::uint32_t c) const noexcept {
-        return {others_.data() + begin_[c], degree_[c]};
-    }
-    [[nodiscard]] std::span<std::uint32_t const> links(std::uint32_t c) const noexcept {
-        return {links_.data() + begin_[c], degree_[c]};
+    [[nodiscard]] std::span<bond const> of(std::uint32_t c) const noexcept {
+        return {bonds_.data() + lists_[c].begin, lists_[c].size};
     }
     [[nodiscard]] bool contains(std::uint32_t link, std::uint32_t c) const noexcept {
-        for (std::uint32_t const l : links(c)) {
-            if (l == link) return true;
+        for (bond const& b : of(c)) {
+            if (b.link == link) return true;
         }
         return false;
     }
@@ -56,29 +53,43 @@ public:
     bool remove(std::uint32_t link, std::uint32_t a, std::uint32_t b) noexcept {
         return remove_end(link, a) && remove_end(link, b);
     }
-    void clear(std::uint32_t c) noexcept { degree_[c] = 0; }
+    void clear(std::uint32_t c) noexcept { lists_[c].size = 0; }
     bool remove_end(std::uint32_t link, std::uint32_t c) noexcept {
-        std::uint32_t const first = begin_[c];
-        for (std::uint32_t i = first; i < first + degree_[c]; ++i) {
-            if (links_[i] != link) continue;
-            std::uint32_t const last = first + --degree_[c];
-            links_[i] = links_[last];
-            others_[i] = others_[last];
+        list& mine = lists_[c];
+        for (std::uint32_t i = mine.begin; i < mine.begin + mine.size; ++i) {
+            if (bonds_[i].link != link) continue;
+            bonds_[i] = bonds_[mine.begin + --mine.size];
             return true;
         }
         return false;
     }
 
-    [[nodiscard]] std::size_t cell_count() const noexcept { return degree_.size(); }
+    /// Whether a and b are bonded, or both to a third cell; false as well where it is too long to look.
+    [[nodiscard]] bool share_neighbor(std::uint32_t a, std::uint32_t b) const noexcept {
+        auto const of_a = of(a);
+        auto const of_b = of(b);
+        if (of_a.size() * of_b.size() > 1024) return false;
+        for (bond const& y : of_b) {
+            if (y.other == a) return true;
+            for (bond const& x : of_a) {
+                if (x.other == y.other) return true;
+            }
+        }
+        return false;
+    }
+
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return 4 * (begin_.capacity() + degree_.capacity() + others_.capacity() + links_.capacity());
+        return lists_.capacity() * sizeof(list) + bonds_.capacity() * sizeof(bond);
     }
 
 private:
-    std::vector<std::uint32_t> begin_{};
-    std::vector<std::uint32_t> degree_{};
-    std::vector<std::uint32_t> others_{};
-    std::vector<std::uint32_t> links_{};
+    struct list {
+        std::uint32_t begin;
+        std::uint32_t size;
+    };
+
+    std::vector<list> lists_{};
+    std::vector<bond> bonds_{};
 };
 
 }  // namespace tafoni::detail

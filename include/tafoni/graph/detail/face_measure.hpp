@@ -13,6 +13,7 @@ namespace tafoni::detail {
 struct face_measure {
     vec3 area{0, 0, 0};      ///< area times unit normal
     vec3 centroid{0, 0, 0};  ///< of the area; the first corner where there is none
+    double diagonal = 0;     ///< of the face's box
 };
 
 /// Fans every loop from the first corner of the outline; holes count negative by their orientation. O(corners).
@@ -23,6 +24,8 @@ template <class Complex>
     double ax = 0;
     double ay = 0;
     double az = 0;
+    vec3 lo{0, 0, 0};
+    vec3 hi{0, 0, 0};
     auto const fan = [&](auto const& use) {
         std::size_t const loops = c.loop_count(f);
         for (std::size_t l = 0; l < loops; ++l) {
@@ -42,6 +45,10 @@ template <class Complex>
         ax += p[1] * q[2] - p[2] * q[1];
         ay += p[2] * q[0] - p[0] * q[2];
         az += p[0] * q[1] - p[1] * q[0];
+        for (int d = 0; d < 3; ++d) {
+            lo[d] = q[d] < lo[d] ? q[d] : lo[d];
+            hi[d] = q[d] > hi[d] ? q[d] : hi[d];
+        }
     });
     vec3 const twice{ax, ay, az};
     vec3 const n = normalized(twice);
@@ -57,15 +64,15 @@ template <class Complex>
         mz += w * (p[2] + q[2]);
     });
     double const s = weights > 0 ? 1 / (3 * weights) : 0.0;
-    return {vec3{0.5 * ax, 0.5 * ay, 0.5 * az}, vec3{o[0] + s * mx, o[1] + s * my, o[2] + s * mz}};
+    return {vec3{0.5 * ax, 0.5 * ay, 0.5 * az}, vec3{o[0] + s * mx, o[1] + s * my, o[2] + s * mz},
+            length(vec3{hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]})};
 }
 
-/// Enlarges `box` by the outline of the face; returns the diagonal of the box.
+/// Enlarges `box` by the outline of the face.
 template <class Complex>
-double extend_by_face(Complex const& c, face_index f, box3& box) {
+void extend_by_face(Complex const& c, face_index f, box3& box) {
     auto const outline = c.face_loop(f, 0);
     for (std::size_t k = 0; k < outline.size(); ++k) box.include(c.position(vertex_index{outline[k]}));
-    return box.diagonal();
 }
 
 }  // namespace tafoni::detail
