@@ -4,6 +4,7 @@
 #define TAFONI_GEOMETRY_OUTCROP_HPP
 
 #include <tafoni/core/elementary.hpp>
+#include <tafoni/core/random.hpp>
 #include <tafoni/field/fractal_noise.hpp>
 #include <tafoni/geometry/indexed_mesh.hpp>
 
@@ -35,9 +36,9 @@ struct outcrop_shape {
         return t * t * (3 - 2 * t);
     }
 
-    /// Height of the rim, 3.0 to 4.6 m: the outcrop is higher at its front (-y) than at its back.
+    /// Height of the rim, 3.4 to 4.6 m: the outcrop is higher at its front (-y) than at its back.
     [[nodiscard]] double rim(vec3 const& out) const noexcept {
-        return 3.8 - 0.4 * out[1] + 0.35 * crown(vec3{2 * out[0], 2 * out[1], 0});
+        return 4.0 - 0.3 * out[1] + 0.25 * crown(vec3{2 * out[0], 2 * out[1], 0});
     }
 
     /// Distance from the axis at the share t in [0, 1] of the rim's height.
@@ -47,9 +48,9 @@ struct outcrop_shape {
         double const front = smooth(0.55 - 0.8 * out[1]);
         vec3 const at{plan * out[0], plan * out[1], z};
         // The back is a slope, the front a wall that hangs over a niche.
-        double const slope = 0.98 - 0.25 * t;
-        double const niche = smooth((t - 0.02) / 0.2) * smooth((0.6 - t) / 0.25);
-        double const wall = 0.92 - 0.15 * niche * (1 + 0.6 * bedding(vec3{at[0] + 9, at[1], at[2]})) - 0.1 * smooth((t - 0.85) / 0.15);
+        double const slope = 0.95 - 0.2 * t;
+        double const niche = smooth((t + 0.25) / 0.4) * smooth((0.62 - t) / 0.25);
+        double const wall = 0.94 - 0.17 * niche * (1 + 0.6 * bedding(vec3{at[0] + 9, at[1], at[2]})) - 0.1 * smooth((t - 0.85) / 0.15);
         // Beds of uneven thickness stick out by uneven amounts, and not all the way around.
         double const bed = (z + 0.45 * bedding(at)) / 0.95;
         double const in_bed = bed - std::floor(bed);
@@ -57,7 +58,12 @@ struct outcrop_shape {
         double const ledge = 0.1 * std::max(strength, 0.0) * (smooth(in_bed / 0.12) - in_bed);
         // Joints: upright clefts where a noise crosses zero.
         double const cleft = 1 - std::min(1.0, 14 * std::fabs(joints(vec3{at[0], at[1], 0.25 * z})));
-        double const r = plan * (slope + front * (wall - slope) + ledge - 0.07 * cleft + 0.34 * relief(at));
+        // Between joints and beds the rock stands in blocks, some further out than others.
+        auto const cell = [](double x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x)) + 1000); };
+        double const bend = 0.5 * bedding(vec3{at[1], at[0], 0.5 * z});
+        stream random(relief.seed, stage::user, cell(at[0] / 1.1 + bend) + (cell(at[1] / 1.1 - bend) << 16) + (cell(bed) << 32));
+        double const block = 0.09 * random.uniform(-1, 1);
+        double const r = plan * (slope + front * (wall - slope) + block + ledge - 0.07 * cleft + 0.34 * relief(at));
         return std::max(r, 0.35);
     }
 
