@@ -105,7 +105,7 @@ else
     for compiler in g++ clang++-19; do
         step "consumer-$compiler" sh "$root/tests/consumer/run.sh" "$compiler" "$build/consumer-$compiler"
     done
-    step golden sh "$root/tests/determinism/run.sh" "$build/golden"
+    step golden sh "$root/tests/determinism/run.sh" "$build/golden" "$jobs"
 
     if [ $mode = full ]; then
         configured clang

@@ -2,16 +2,35 @@
 /// Runs small scenarios and prints one line `name hash` for each; the hashes must be the same on every
 /// compiler, optimisation level, instruction set and number of threads (tests/determinism/run.sh).
 /// A new scenario is a function that feeds its result into a `fingerprint`, and one line in `main`.
-#include <tafoni/core/random.hpp>
+#include "support/shapes.hpp"
+
+#include <tafoni/core/elementary.hpp>
+#include <tafoni/core/random_normal.hpp>
 #include <tafoni/core/sum.hpp>
-#include <tafoni/core/vector.hpp>
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/decomposition/grid_sites.hpp>
+#include <tafoni/decomposition/hexagonal_sites.hpp>
+#include <tafoni/decomposition/poisson_sites.hpp>
+#include <tafoni/decomposition/random_sites.hpp>
+#include <tafoni/decomposition/surface_sites.hpp>
+#include <tafoni/decomposition/voronoi_shards.hpp>
+#include <tafoni/decomposition/voxel_cells.hpp>
+#include <tafoni/field/fractal_noise.hpp>
+#include <tafoni/field/noise.hpp>
+#include <tafoni/geometry/make_solid.hpp>
+#include <tafoni/graph/make_link_graph.hpp>
+#include <tafoni/percolation/cone_rain.hpp>
+#include <tafoni/weathering/frost_presets.hpp>
+#include <tafoni/weathering/frost_run.hpp>
 
 #include <bit>
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 namespace {
 
@@ -77,10 +96,176 @@ void sums(fingerprint& f) {
     }
 }
 
+void elementary_functions(fingerprint& f) {
+    tafoni::stream s(44, tafoni::stage::user, 0);
+    for (int i = 0; i < 5000; ++i) {
+        double const x = s.uniform(-40, 40);
+        double const y = s.uniform(-3, 3);
+        f.add(tafoni::elementary::exp(x));
+        f.add(tafoni::elementary::log(x * x + 1e-9));
+        f.add(tafoni::elementary::pow(std::fabs(x), y));
+        f.add(tafoni::elementary::sin(x));
+        f.add(tafoni::elementary::cos(1000 * x));
+        f.add(tafoni::elementary::acos(y / 3));
+        f.add(tafoni::random_normal(s));
+    }
+}
+
+void noise(fingerprint& f) {
+    tafoni::gradient_noise const plain{.seed = 3, .frequency = 1.7};
+    tafoni::fractal_noise const fractal{.seed = 4, .frequency = 0.8, .octaves = 5};
+    tafoni::stream s(45, tafoni::stage::user, 0);
+    for (int i = 0; i < 2000; ++i) {
+        tafoni::vec3 const direction = s.unit_vector();
+        tafoni::vec3 const p{direction[0] * i, direction[1] * i, direction[2] * i};
+        f.add(plain(p));
+        f.add(fractal(p));
+    }
+}
+
+template <class Complex>
+void add_complex(fingerprint& f, Complex const& c) {
+    f.add(c.cell_count());
+    f.add(c.face_count());
+    for (std::size_t i = 0; i < c.cell_count(); ++i) {
+        tafoni::cell_index const cell{i};
+        f.add(c.cell_volume(cell));
+        f.add(c.cell_centroid(cell));
+    }
+    for (std::size_t i = 0; i < c.vertex_count(); ++i) f.add(c.position(tafoni::vertex_index{i}));
+    for (std::size_t i = 0; i < c.face_count(); ++i) {
+        tafoni::face_index const face{i};
+        for (tafoni::cell_index const cell : c.face_cells(face)) f.add(cell.value);
+        f.add(c.face_patch(face).value);
+        for (std::size_t loop = 0; loop < c.loop_count(face); ++loop) {
+            for (tafoni::vertex_index const v : c.face_loop(face, loop)) f.add(v.value);
+        }
+    }
+}
+
+template <class Network>
+void add_network(fingerprint& f, Network const& n) {
+    for (std::size_t i = 0; i < n.link_count(); ++i) {
+        tafoni::link_index const l{i};
+        if (!n.has_link(l)) continue;
+        for (tafoni::cell_index const cell : n.link_cells(l)) f.add(cell.value);
+        f.add(n.link_area(l));
+        f.add(n.link_centroid(l));
+        f.add(n.link_normal(l));
+        n.for_each_neighbor(l, [&](tafoni::link_index other) { f.add(other.value); });
+    }
+}
+
+template <class Run>
+void add_run(fingerprint& f, Run const& run) {
+    for (std::size_t i = 0; i < run.network().link_count(); ++i) {
+        tafoni::link_index const l{i};
+        if (run.network().has_link(l)) f.add(run.life(l));
+    }
+    for (tafoni::cell_state const c : run.cells()) f.add(static_cast<int>(c));
+    for (tafoni::detached_block const& b : run.blocks()) {
+        f.add(b.path);
+        f.add(b.volume);
+        for (tafoni::cell_index const c : b.cells) f.add(c.value);
+    }
+    tafoni::frost_report const r = run.report();
+    f.add(r.paths);
+    f.add(r.links_traversed);
+    f.add(r.links_broken);
+    f.add(r.cells_detached);
+    f.add(r.water_absorbed);
+}
+
+/// The hash of `scenario(threads)`, which must not depend on the number of threads.
+template <class Scenario>
+void on_any_threads(fingerprint& f, Scenario const& scenario) {
+    fingerprint one;
+    scenario(one, tafoni::thread_pool(1));
+    for (std::size_t const threads : {2U, 7U}) {
+        fingerprint more;
+        scenario(more, tafoni::thread_pool(threads));
+        if (more.value() != one.value()) {
+            std::printf("other bits with %zu threads\n", threads);
+            std::exit(1);
+        }
+    }
+    f.add(one.value());
+}
+
+tafoni::solid l_body() { return tafoni::make_solid(tafoni_test::l_shape()); }
+
+void site_patterns(fingerprint& f) {
+    tafoni::solid const body = tafoni::make_solid(tafoni_test::torus(2, 0.8, 24, 16));
+    auto const add = [&](std::vector<tafoni::vec3> const& sites) { f.add(std::span<tafoni::vec3 const>(sites)); };
+    add(tafoni::random_sites{.count = 300}(body, 1));
+    add(tafoni::surface_sites{.count = 300}(body, 2));
+    add(tafoni::grid_sites{.count = 300, .jitter = 0.5}(body, 3));
+    add(tafoni::hexagonal_sites{}(body, 4));
+    add(tafoni::poisson_sites{}(body, 5));
+}
+
+void shards_of_an_l(fingerprint& f) {
+    tafoni::solid const body = l_body();
+    std::vector<tafoni::vec3> const sites = tafoni::random_sites{.count = 400}(body, 7);
+    on_any_threads(f, [&](fingerprint& g, tafoni::thread_pool const& pool) {
+        tafoni::shard_complex const shards = tafoni::voronoi_shards(body, sites, {}, pool);
+        add_complex(g, shards);
+        add_network(g, tafoni::make_link_graph(shards, {}, pool));
+    });
+}
+
+void shards_of_a_grid(fingerprint& f) {
+    tafoni::solid const body = tafoni::make_solid(tafoni_test::box_with_cavity());
+    auto const shards = tafoni::voronoi_shards(body, tafoni::grid_sites{.count = 216, .jitter = 0}(body, 1));
+    add_complex(f, shards);
+    add_network(f, tafoni::make_link_graph(shards));
+}
+
+void shards_of_limbs(fingerprint& f) {
+    tafoni::solid const body = tafoni::make_solid(tafoni_test::thin_limbs());
+    add_complex(f, tafoni::voronoi_shards(body, tafoni::surface_sites{.count = 200}(body, 8)));
+}
+
+void frost(fingerprint& f, tafoni::frost_preset const& preset, std::uint32_t batch) {
+    tafoni::solid const body = l_body();
+    auto const shards = tafoni::voronoi_shards(body, tafoni::random_sites{.count = 400}(body, 9));
+    auto const links = tafoni::make_link_graph(shards);
+    on_any_threads(f, [&](fingerprint& g, tafoni::thread_pool const& pool) {
+        tafoni::frost_run run(links, preset.process, preset.options);
+        run.run({.paths = 3000, .batch = batch}, {}, pool);
+        add_run(g, run);
+        for (std::byte const b : run.checkpoint()) g.add(static_cast<int>(b));
+    });
+}
+
+void frost_of_the_paper(fingerprint& f) { frost(f, tafoni::paper_preset(), 1); }
+void frost_of_the_addon(fingerprint& f) { frost(f, tafoni::addon_preset(), 1); }
+void frost_in_batches(fingerprint& f) { frost(f, tafoni::paper_preset(), 64); }
+
+void frost_on_voxels(fingerprint& f) {
+    auto const ball = tafoni::voxel_cells::from_indices({.size = {12, 12, 12}}, [](auto i, auto j, auto k) {
+        auto const from = [](std::size_t a) { return (static_cast<double>(a) - 5.5) * (static_cast<double>(a) - 5.5); };
+        return from(i) + from(j) + from(k) < 36;
+    });
+    tafoni::frost_run run(ball, tafoni::frost_wedging{.rain = tafoni::cone_rain{}}, {.seed = 5});
+    run.run({.paths = 4000});
+    add_run(f, run);
+}
+
 }  // namespace
 
 int main() {
     print("random_streams", random_streams);
     print("vector_algebra", vector_algebra);
     print("sums", sums);
+    print("elementary_functions", elementary_functions);
+    print("noise", noise);
+    print("site_patterns", site_patterns);
+    print("shards_of_an_l", shards_of_an_l);
+    print("shards_of_a_grid", shards_of_a_grid);
+    print("shards_of_limbs", shards_of_limbs);
+    print("frost_of_the_paper", frost_of_the_paper);
+    print("frost_of_the_addon", frost_of_the_addon);
+    print("frost_in_batches", frost_in_batches);
+    print("frost_on_voxels", frost_on_voxels);
 }
