@@ -79,6 +79,12 @@ public:
     [[nodiscard]] std::span<link_index const> links_of(cell_index c) const noexcept {
         return {a_.cell_links.data() + a_.cell_begin[c.value], a_.cell_begin[c.value + 1] - a_.cell_begin[c.value]};
     }
+    /// The interior links of a cell, ascending. O(log links of the cell).
+    [[nodiscard]] std::span<link_index const> bonds_of(cell_index c) const noexcept {
+        auto const all = links_of(c);
+        auto const end = std::lower_bound(all.begin(), all.end(), link_index{a_.cells.size()});
+        return all.first(static_cast<std::size_t>(end - all.begin()));
+    }
     /// Neigh(l), ascending.
     [[nodiscard]] std::span<link_index const> neighbors(link_index l) const noexcept {
         return {a_.neighbors.data() + a_.neighbor_begin[l.value],
