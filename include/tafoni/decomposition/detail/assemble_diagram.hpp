@@ -39,13 +39,20 @@ void write_faces(Diagram& d, cell_block const& block, block_offset at, std::vect
         auto const* triples = list + c.corners;
         global.resize(c.vertices);
         for (std::uint32_t v = 0; v < c.vertices; ++v) {
-            vertex_key key{cell, ids[triples[3 * v]], ids[triples[3 * v + 1]], ids[triples[3 * v + 2]]};
-            std::sort(key.begin(), key.end());
+            std::uint32_t const i = ids[triples[3 * v]];
+            std::uint32_t const j = ids[triples[3 * v + 1]];
+            std::uint32_t const k = ids[triples[3 * v + 2]];
+            vertex_key const key{std::min(cell, i), std::max(std::min(cell, j), i), std::max(std::min(cell, k), j),
+                                 std::max(cell, k)};
             auto const* first = d.keys.data() + vertex_begin[key[0]];
             auto const* last = d.keys.data() + vertex_begin[key[0] + 1];
-            auto const* found = last - first > 16 ? std::lower_bound(first, last, key) : std::find(first, last, key);
-            TAFONI_ASSERT(found != last && *found == key, "cells agree on their vertices");
-            global[v] = static_cast<std::uint32_t>(found - d.keys.data());
+            if (last - first > 16) {
+                first = std::lower_bound(first, last, key);
+            } else {
+                while (first != last && (((*first)[1] ^ key[1]) | ((*first)[2] ^ key[2]) | ((*first)[3] ^ key[3])) != 0) ++first;
+            }
+            TAFONI_ASSERT(first != last && *first == key, "cells agree on their vertices");
+            global[v] = static_cast<std::uint32_t>(first - d.keys.data());
         }
         for (std::uint32_t f = 0; f < c.faces; ++f, ++face) {
             d.neighbour[at.face + face] = ids[f];

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
@@ -20,7 +22,7 @@ using vertex_key = std::array<std::uint32_t, 4>;
 
 /// What a block of cells hands to the assembly. Of each cell in turn: its neighbours, ascending; per
 /// face a degree and its corners as indices of the cell's vertices; per vertex the three neighbours
-/// (their places in the list) that meet there. `own` are the vertices of which the cell is the lowest site.
+/// (their places in the list, ascending) that meet there. `own` are the vertices of which the cell is the lowest site.
 struct cell_block {
     struct cell {
         std::uint32_t faces = 0;
@@ -66,16 +68,8 @@ public:
     }
 
 private:
-    static constexpr double reach_factor = 2.2;
+    static constexpr double reach_factor = 3.2;
     static constexpr float near_factor = 1.9F;
-
-    struct candidate {
-        float distance2;
-        std::uint32_t site;
-        friend bool operator<(candidate const& a, candidate const& b) noexcept {
-            return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.site < b.site;
-        }
-    };
 
     [[nodiscard]] static double distance2(site_tree::node const& a, site_tree::node const& b) noexcept {
         double s = 0;
@@ -88,8 +82,7 @@ private:
 
     // All sites within reach of the leaf, relative to its corner: its sites share them.
     void gather(site_tree::node const& home) {
-        id_.clear();
-        for (auto& c : near_) c.clear();
+        gathered_ = 0;
         for (std::uint32_t k = 0; k < tree_.nodes.size();) {
             site_tree::node const& v = tree_.nodes[k];
             if (distance2(home, v) > reach2_) {
@@ -97,23 +90,49 @@ private:
                 continue;
             }
             if (tree_.is_leaf(k)) {
-                for (std::uint32_t s = v.begin; s < v.end; ++s) {
-                    id_.push_back(s);
+                if (id_.size() < gathered_ + site_tree::leaf_size) {
+                    std::size_t const n = 2 * (gathered_ + site_tree::leaf_size);
+                    id_.resize(n);
+                    distance2_.resize(n);
+                    queue_.resize(n);
+                    sorted_.resize(n);
+                    for (auto& c : near_) c.resize(n);
+                }
+                for (std::uint32_t s = v.begin; s < v.end; ++s, ++gathered_) {
+                    id_[gathered_] = s;
                     for (std::size_t a = 0; a < 3; ++a) {
-                        near_[a].push_back(static_cast<float>(sites_[s][a] - home.lo[a]));
+                        near_[a][gathered_] = static_cast<float>(sites_[s][a] - home.lo[a]);
                     }
                 }
             }
             ++k;
         }
-        distance2_.resize(id_.size());
     }
 
+    // Cuts by the gathered sites with lo < distance^2 <= hi, near ones first: sorted into shells up to
+    // `usual`, which is as good as exact order and needs no comparisons.
     template <class Cell>
-    [[nodiscard]] bool cut_all(Cell& cell, std::uint32_t self) {
-        std::sort(queue_.begin(), queue_.end());
-        for (auto const& c : queue_) {
-            if (c.site != self && !cell.cut({sites_[c.site], c.site})) return false;
+    [[nodiscard]] bool cut_between(Cell& cell, std::uint32_t self, float lo, float hi, float usual) {
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < gathered_; ++k) {
+            queue_[count] = static_cast<std::uint32_t>(k);
+            count += static_cast<std::size_t>((distance2_[k] > lo) & (distance2_[k] <= hi));
+        }
+        constexpr std::size_t shells = 32;
+        std::array<std::uint32_t, shells + 1> begin{};
+        float const base = lo > 0 ? lo : 0;
+        float const span = std::min(hi, usual) - base;
+        float const scale = span > 0 ? static_cast<float>(shells) / span : 0;
+        auto const shell = [&](std::uint32_t k) {
+            float const s = std::min((distance2_[k] - base) * scale, static_cast<float>(shells - 1));
+            return static_cast<std::size_t>(static_cast<std::int32_t>(s));
+        };
+        for (std::size_t k = 0; k < count; ++k) ++begin[shell(queue_[k]) + 1];
+        for (std::size_t k = 0; k < shells; ++k) begin[k + 1] += begin[k];
+        for (std::size_t k = 0; k < count; ++k) sorted_[begin[shell(queue_[k])]++] = id_[queue_[k]];
+        for (std::size_t k = 0; k < count; ++k) {
+            std::uint32_t const s = sorted_[k];
+            if (s != self && !cell.cut(sites_[s], s)) return false;
         }
         return true;
     }
@@ -124,32 +143,27 @@ private:
         float const ox = static_cast<float>(sites_[i][0] - home.lo[0]);
         float const oy = static_cast<float>(sites_[i][1] - home.lo[1]);
         float const oz = static_cast<float>(sites_[i][2] - home.lo[2]);
-        std::size_t const n = id_.size();
-        for (std::size_t k = 0; k < n; ++k) {
-            float const dx = near_[0][k] - ox;
-            float const dy = near_[1][k] - oy;
-            float const dz = near_[2][k] - oz;
-            distance2_[k] = dx * dx + dy * dy + dz * dz;
+        float const* const x = near_[0].data();
+        float const* const y = near_[1].data();
+        float const* const z = near_[2].data();
+        float* const d2 = distance2_.data();
+        for (std::size_t k = 0; k < gathered_; ++k) {
+            float const dx = x[k] - ox;
+            float const dy = y[k] - oy;
+            float const dz = z[k] - oz;
+            d2[k] = dx * dx + dy * dy + dz * dz;
         }
         float const inner = near_factor * home.spacing;
         float const inner2 = inner * inner;
-        queue_.clear();
-        for (std::size_t k = 0; k < n; ++k) {
-            if (distance2_[k] <= inner2) queue_.push_back({distance2_[k], id_[k]});
-        }
-        if (!cut_all(cell, i)) return false;
+        if (!cut_between(cell, i, -1, inner2, inner2)) return false;
         // Single precision sees all sites from the leaf's corner; the slack is far above its error.
         double size2 = reach2_;
         for (std::size_t a = 0; a < 3; ++a) {
             auto const side = static_cast<double>(home.hi[a] - home.lo[a]);
             size2 += side * side;
         }
-        auto const outer2 = static_cast<float>(4 * cell.radius2() + 1e-5 * (size2 + 4 * cell.radius2()));
-        queue_.clear();
-        for (std::size_t k = 0; k < n; ++k) {
-            if (distance2_[k] > inner2 && distance2_[k] <= outer2) queue_.push_back({distance2_[k], id_[k]});
-        }
-        if (!cut_all(cell, i)) return false;
+        double const bound = 4 * cell.radius2() + 1e-5 * (size2 + 4 * cell.radius2());
+        if (!cut_between(cell, i, inner2, static_cast<float>(bound), static_cast<float>(4 * size2))) return false;
         return 4 * cell.radius2() <= reach2_ || search(cell, home, i);
     }
 
@@ -161,17 +175,22 @@ private:
             site_tree::node const& v = tree_.nodes[k];
             std::array<double, 3> lo{};
             std::array<double, 3> hi{};
+            double near2 = 0;
             for (std::size_t a = 0; a < 3; ++a) {
                 lo[a] = static_cast<double>(v.lo[a] - at[a]);
                 hi[a] = static_cast<double>(v.hi[a] - at[a]);
+                double const gap = std::max(0.0, std::max(lo[a], -hi[a]));
+                near2 += gap * gap;
             }
-            if (!cell.reachable(lo, hi)) {
+            // Three tests, cheapest first: too far for any vertex, seen already, out of every vertex' reach.
+            if (near2 > 4 * cell.radius2() || (tree_.is_leaf(k) && distance2(home, v) <= reach2_) ||
+                (near2 > 0.25 * reach2_ && !cell.reachable(lo, hi))) {
                 k = v.skip;
                 continue;
             }
-            if (tree_.is_leaf(k) && distance2(home, v) > reach2_) {
+            if (tree_.is_leaf(k)) {
                 for (std::uint32_t s = v.begin; s < v.end; ++s) {
-                    if (!cell.cut({sites_[s], s})) return false;
+                    if (!cell.cut(sites_[s], s)) return false;
                 }
             }
             ++k;
@@ -185,48 +204,81 @@ private:
         auto const self = cell.site().rank;
         order_.clear();
         for (std::uint32_t p = 0; p < cell.plane_count(); ++p) {
-            if (cell.alive(p)) order_.push_back(p);
+            if (cell.alive(p)) order_.push_back(std::uint64_t{cell.id_of(p)} << 32 | p);
         }
-        std::sort(order_.begin(), order_.end(),
-                  [&cell](std::uint32_t a, std::uint32_t b) { return cell.id_of(a) < cell.id_of(b); });
+        sort_few(order_);
         place_.resize(cell.plane_count());
         first_.resize(cell.plane_count());
-        for (std::size_t k = 0; k < order_.size(); ++k) place_[order_[k]] = static_cast<std::uint32_t>(k);
-
         cell_block::cell c{.faces = static_cast<std::uint32_t>(order_.size()), .vertices = cell.vertex_count()};
-        own_.clear();
-        for (std::uint32_t v = 0; v < c.vertices; ++v) {
-            auto const& t = cell.vertex(v);
-            for (auto p : t) first_[p] = v;
-            vertex_key key{self, cell.id_of(t[0]), cell.id_of(t[1]), cell.id_of(t[2])};
-            if (self < key[1] && self < key[2] && self < key[3]) {
-                std::sort(key.begin() + 1, key.end());
-                own_.push_back(key);
-            }
-        }
-        std::sort(own_.begin(), own_.end());
-        for (auto const& key : own_) {
-            out.own_key.push_back(key);
-            out.own_position.push_back(position(key));
-        }
-        c.own = static_cast<std::uint32_t>(own_.size());
-        for (auto p : order_) {
-            out.neighbour.push_back(cell.id_of(p));
-            out.degree.push_back(cell.degree(p));
+        std::size_t const face = out.neighbour.size();
+        out.neighbour.resize(face + order_.size());
+        out.degree.resize(face + order_.size());
+        for (std::uint32_t k = 0; k < c.faces; ++k) {
+            auto const p = static_cast<std::uint32_t>(order_[k]);
+            place_[p] = k;
+            out.neighbour[face + k] = cell.id_of(p);
+            out.degree[face + k] = cell.degree(p);
             c.corners += cell.degree(p);
         }
+        std::uint32_t const* const ids = out.neighbour.data() + face;
+        // Sites of higher rank than this one, and the walls, come last.
+        auto const above = static_cast<std::uint32_t>(std::lower_bound(ids, ids + c.faces, self) - ids);
+        own_.clear();
         auto const write = [&]<class T>(std::vector<T>& list) {
-            for (auto p : order_) cell.walk(p, first_[p], [&](std::uint32_t v) { list.push_back(static_cast<T>(v)); });
+            std::size_t const old = list.size();
+            list.resize(old + c.corners + 3 * std::size_t{c.vertices});
+            T* triple = list.data() + old + c.corners;
             for (std::uint32_t v = 0; v < c.vertices; ++v) {
-                for (auto p : cell.vertex(v)) list.push_back(static_cast<T>(place_[p]));
+                auto const& t = cell.vertex(v);
+                std::uint64_t i = place_[t[0]];
+                std::uint64_t j = place_[t[1]];
+                std::uint64_t k = place_[t[2]];
+                first_[t[0]] = first_[t[1]] = first_[t[2]] = v;
+                if (i > j) std::swap(i, j);
+                if (j > k) std::swap(j, k);
+                if (i > j) std::swap(i, j);
+                if (i >= above) own_.push_back(i << 42 | j << 21 | k);
+                *triple++ = static_cast<T>(i);
+                *triple++ = static_cast<T>(j);
+                *triple++ = static_cast<T>(k);
+            }
+            T* corner = list.data() + old;
+            for (auto const o : order_) {
+                auto const p = static_cast<std::uint32_t>(o);
+                cell.walk(p, first_[p], [&](std::uint32_t v) { *corner++ = static_cast<T>(v); });
             }
         };
         if (c.vertices <= 255) {
             write(out.corner_small);
         } else {
+            if (c.faces >> 21 != 0) {
+                fail<invalid_input>(errc::size_overflow, "make_voronoi_diagram: a cell has " + std::to_string(c.faces) + " faces");
+            }
             write(out.corner_large);
         }
+        sort_few(own_);
+        constexpr std::uint64_t mask = (1U << 21) - 1;
+        for (auto const o : own_) {
+            vertex_key const key{self, ids[o >> 42], ids[o >> 21 & mask], ids[o & mask]};
+            out.own_key.push_back(key);
+            out.own_position.push_back(position(key));
+        }
+        c.own = static_cast<std::uint32_t>(own_.size());
         out.cells.push_back(c);
+    }
+
+    // Insertion for the usual handful.
+    static void sort_few(std::vector<std::uint64_t>& list) {
+        if (list.size() > 48) {
+            std::sort(list.begin(), list.end());
+            return;
+        }
+        for (std::size_t k = 1; k < list.size(); ++k) {
+            std::uint64_t const v = list[k];
+            std::size_t h = k;
+            for (; h > 0 && list[h - 1] > v; --h) list[h] = list[h - 1];
+            list[h] = v;
+        }
     }
 
     [[nodiscard]] exact::plane plane(std::uint32_t id) const noexcept {
@@ -262,11 +314,13 @@ private:
     std::vector<std::uint32_t> id_;
     std::array<std::vector<float>, 3> near_;
     std::vector<float> distance2_;
-    std::vector<candidate> queue_;
-    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> queue_;
+    std::vector<std::uint32_t> sorted_;
+    std::size_t gathered_ = 0;
+    std::vector<std::uint64_t> order_;
     std::vector<std::uint32_t> place_;
     std::vector<std::uint32_t> first_;
-    std::vector<vertex_key> own_;
+    std::vector<std::uint64_t> own_;
 };
 
 }  // namespace baseline or avx

@@ -156,25 +156,27 @@ public:
     }
 
     /// Takes away what is nearer to `other`. False when the fixed tables are full: start again with a larger cell.
-    [[nodiscard]] bool cut(exact::site const& other) {
-        auto const nx = static_cast<double>(other.at[0] - site_.at[0]);
-        auto const ny = static_cast<double>(other.at[1] - site_.at[1]);
-        auto const nz = static_cast<double>(other.at[2] - site_.at[2]);
+    [[nodiscard]] bool cut(ivec3 const& at, std::uint32_t rank) {
+        auto const nx = static_cast<double>(at[0] - site_.at[0]);
+        auto const ny = static_cast<double>(at[1] - site_.at[1]);
+        auto const nz = static_cast<double>(at[2] - site_.at[2]);
         double const h = 0.5 * (nx * nx + ny * ny + nz * nz);
         if (h > 2.000001 * radius2_) return true;
         double const n1 = std::fabs(nx) + std::fabs(ny) + std::fabs(nz);
         double const floor = 0x1p-49 * n1 * radius_;
         if (!maybe_cuts(nx, ny, nz, h, n1, floor)) return true;
-        removed_.clear();
+        removed_count_ = 0;
+        std::size_t unsure = 0;
         for (std::uint32_t v = 0; v < count_; ++v) {
             double const margin = error_[v] * n1 + floor;
-            if (side_[v] < -margin) continue;
-            if (side_[v] > margin || beyond(v, other)) {
-                removed_.push_back(v);
-                flag_[v] = 1;
-            }
+            removed_[removed_count_] = v;
+            removed_count_ += static_cast<std::size_t>(side_[v] > margin);
+            unsure += static_cast<std::size_t>(std::fabs(side_[v]) <= margin);
         }
-        if (removed_.empty()) return true;
+        exact::site const other{at, rank};
+        if (unsure != 0) decide_exactly(other, n1, floor);
+        if (removed_count_ == 0) return true;
+        for (std::size_t k = 0; k < removed_count_; ++k) flag_[removed_[k]] = 1;
         return replace_removed(other, n1);
     }
 
@@ -191,16 +193,22 @@ public:
 
     /// Could a site in the box (lattice units relative to this site) cut the cell? Never a wrong no. O(vertices).
     [[nodiscard]] bool reachable(std::array<double, 3> const& lo, std::array<double, 3> const& hi) const noexcept {
-        auto const gap = [](double l, double u, double q) { return std::max(0.0, std::max(l - q, q - u)); };
-        double const ox = gap(lo[0], hi[0], 0);
-        double const oy = gap(lo[1], hi[1], 0);
-        double const oz = gap(lo[2], hi[2], 0);
-        if (ox * ox + oy * oy + oz * oz > 4 * radius2()) return false;
-        for (std::uint32_t v = 0; v < count_; ++v) {
-            double const dx = gap(lo[0], hi[0], x_[v]);
-            double const dy = gap(lo[1], hi[1], y_[v]);
-            double const dz = gap(lo[2], hi[2], z_[v]);
-            if (dx * dx + dy * dy + dz * dz <= 1.000001 * r2_[v]) return true;
+        lanes const zero{};
+        lanes reached = zero - 1;
+        for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
+            auto const gap2 = [&](double l, double u, lanes q) {
+                lanes const below = l - q;
+                lanes const above = q - u;
+                lanes const most = below > above ? below : above;
+                lanes const gap = most > zero ? most : zero;
+                return gap * gap;
+            };
+            lanes const spare = 1.000001 * load(r2_.data() + v) - gap2(lo[0], hi[0], load(x_.data() + v)) -
+                                gap2(lo[1], hi[1], load(y_.data() + v)) - gap2(lo[2], hi[2], load(z_.data() + v));
+            reached = spare > reached ? spare : reached;
+        }
+        for (std::size_t k = 0; k < cell_lanes; ++k) {
+            if (reached[k] >= 0) return true;
         }
         return false;
     }
@@ -261,6 +269,7 @@ private:
                 for (auto* b : {&x_, &y_, &z_, &error_, &r2_, &side_}) b->resize(n);
                 triple_.resize(n);
                 flag_.resize(n);
+                removed_.resize(n);
             }
             if (plane_.size() < planes) {
                 plane_.resize(2 * planes);
@@ -293,8 +302,13 @@ private:
     }
 
     void update_radius() noexcept {
-        double r = 0;
-        for (std::uint32_t v = 0; v < count_; ++v) r = r2_[v] > r ? r2_[v] : r;
+        lanes most{};
+        for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
+            lanes const value = load(r2_.data() + v);
+            most = value > most ? value : most;
+        }
+        double r = most[0];
+        for (std::size_t k = 1; k < cell_lanes; ++k) r = most[k] > r ? most[k] : r;
         radius2_ = r;
         radius_ = std::sqrt(r);
     }
@@ -329,23 +343,37 @@ private:
         return exact::side4(site_, plane_[t[0]], plane_[t[1]], plane_[t[2]], other) > 0;
     }
 
+    void decide_exactly(exact::site const& other, double n1, double floor) {
+        removed_count_ = 0;
+        for (std::uint32_t v = 0; v < count_; ++v) {
+            double const margin = error_[v] * n1 + floor;
+            if (side_[v] < -margin) continue;
+            if (side_[v] > margin || beyond(v, other)) removed_[removed_count_++] = v;
+        }
+    }
+
     // The edges between removed and kept vertices, each with its removed end's direction a -> b.
     void find_open_edges() {
-        open_.clear();
+        open_count_ = 0;
         if constexpr (fixed) {
-            for (std::uint32_t v : removed_) {
+            for (std::size_t r = 0; r < removed_count_; ++r) {
+                std::uint32_t const v = removed_[r];
                 triple const t = triple_[v];
                 for (std::size_t k = 0; k < 3; ++k) {
                     id const a = t[k];
                     id const b = t[k == 2 ? 0 : k + 1];
                     std::uint32_t const w = holder(b, a);
-                    if (flag_[w] == 0) open_.push_back({a, b, v, w});
+                    open_[open_count_] = {a, b, v, w};
+                    open_count_ += 1U - flag_[w];
                 }
             }
         } else {
             // Edges inside the removed part occur in both directions and cancel.
             edges_.clear();
-            for (std::uint32_t v : removed_) {
+            open_.resize(3 * removed_count_);
+            fresh_.resize(3 * removed_count_);
+            for (std::size_t r = 0; r < removed_count_; ++r) {
+                std::uint32_t const v = removed_[r];
                 for (std::size_t k = 0; k < 3; ++k) edges_.push_back({key(triple_[v][k], triple_[v][(k + 1) % 3]), v});
             }
             std::sort(edges_.begin(), edges_.end(), [](auto const& a, auto const& b) { return a.key < b.key; });
@@ -354,13 +382,13 @@ private:
                 auto const t = std::lower_bound(edges_.begin(), edges_.end(), twin,
                                                 [](directed_edge const& l, std::uint64_t r) { return l.key < r; });
                 if (t != edges_.end() && t->key == twin) continue;
-                open_.push_back({static_cast<id>(e.key >> 32), static_cast<id>(e.key & 0xffffffffU), e.vertex, 0});
+                open_[open_count_++] = {static_cast<id>(e.key >> 32), static_cast<id>(e.key & 0xffffffffU), e.vertex, 0};
             }
         }
     }
 
     [[nodiscard]] bool replace_removed(exact::site const& other, double n1) {
-        TAFONI_ASSERT(removed_.size() < count_, "a cell holds its site");
+        TAFONI_ASSERT(removed_count_ < count_, "a cell holds its site");
         id p{};
         if (!free_.empty()) {
             p = free_.back();
@@ -368,7 +396,7 @@ private:
         } else {
             if constexpr (fixed) {
                 if (planes_ == Planes) {
-                    for (std::uint32_t v : removed_) flag_[v] = 0;
+                    for (std::size_t k = 0; k < removed_count_; ++k) flag_[removed_[k]] = 0;
                     return false;
                 }
             }
@@ -378,37 +406,28 @@ private:
         plane_[p] = other;
         id_[p] = other.rank;
         find_open_edges();
-        degree_[p] = static_cast<std::uint32_t>(open_.size());
-        fresh_.clear();
-        for (auto const& e : open_) fresh_.push_back(crossing(e, p, n1));
-        for (std::uint32_t v : removed_) {
-            flag_[v] = 0;
-            for (id q : triple_[v]) --degree_[q];
+        degree_[p] = static_cast<std::uint32_t>(open_count_);
+        for (std::size_t k = 0; k < open_count_; ++k) fresh_[k] = crossing(open_[k], p, n1);
+        for (std::size_t k = 0; k < open_count_; ++k) {
+            ++degree_[open_[k].a];
+            ++degree_[open_[k].b];
         }
-        for (auto const& e : open_) {
-            ++degree_[e.a];
-            ++degree_[e.b];
-        }
-        for (std::uint32_t v : removed_) {
-            for (id q : triple_[v]) {
-                if (degree_[q] == 0) {
-                    degree_[q] = 1;  // once only
-                    free_.push_back(q);
-                }
+        for (std::size_t k = 0; k < removed_count_; ++k) {
+            flag_[removed_[k]] = 0;
+            for (id q : triple_[removed_[k]]) {
+                if (--degree_[q] == 0) free_.push_back(q);
             }
         }
-        for (id q : free_) degree_[q] = 0;
-        grow(count_ + open_.size(), planes_);
+        grow(count_ + open_count_, planes_);
         std::size_t used = 0;
-        for (std::size_t k = 0; k < open_.size(); ++k) {
-            std::uint32_t const v = used < removed_.size() ? removed_[used++] : count_++;
+        for (std::size_t k = 0; k < open_count_; ++k) {
+            std::uint32_t const v = used < removed_count_ ? removed_[used++] : count_++;
             set(v, {open_[k].a, open_[k].b, p});
             put(v, fresh_[k]);
         }
         // Slots left over, from the last: move the last vertex in.
-        while (removed_.size() > used) {
-            std::uint32_t const hole = removed_.back();
-            removed_.pop_back();
+        while (removed_count_ > used) {
+            std::uint32_t const hole = removed_[--removed_count_];
             --count_;
             if (hole == count_) continue;
             set(hole, triple_[count_]);
@@ -461,9 +480,11 @@ private:
     buffer<std::uint32_t, Planes> degree_{};
     buffer<std::uint8_t, Planes * Planes> holder_{};
     std::vector<id> free_;
-    std::vector<std::uint32_t> removed_;
-    std::vector<open_edge> open_;
-    std::vector<vertex_estimate> fresh_;
+    buffer<std::uint32_t, max_vertices + 4> removed_{};
+    std::size_t removed_count_ = 0;
+    std::size_t open_count_ = 0;
+    buffer<open_edge, max_vertices + 4> open_{};
+    buffer<vertex_estimate, max_vertices + 4> fresh_{};
     std::vector<directed_edge> edges_;
 };
 
