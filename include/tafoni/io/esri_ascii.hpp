@@ -44,8 +44,8 @@ private:
             std::size_t k = 0;
             while (k < keys && names[k] != word) ++k;
             if (k == keys) {
-                // A grid whose first height is nan: the header is over.
-                if (word == "nan" && place_[ncols] != nullptr && place_[nrows] != nullptr) {
+                // A grid whose first height is nan or inf: the header is over.
+                if ((word == "nan" || word == "inf") && place_[ncols] != nullptr && place_[nrows] != nullptr) {
                     at_ = start;
                     break;
                 }

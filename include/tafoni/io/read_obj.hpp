@@ -88,6 +88,8 @@ private:
         }
         for (std::size_t k = 0; k < colours_; ++k) {
             std::vector<double>& channel = out_.attributes.vertex_channels[k].values;
+            // Four channels that double would, for a moment, be more than the file's share of memory.
+            if (channel.capacity() < position_count_) channel.reserve(position_count_ + position_count_ / 2);
             if (channel.size() + 1 < position_count_) {
                 channel.resize(position_count_ - 1, std::numeric_limits<double>::quiet_NaN());
             }
