@@ -202,7 +202,7 @@ TEST_CASE("law 16: zero paths and dry paths change nothing") {
     frost_run run(n, slanting());
     auto const before = run.checkpoint();
     run.run({.paths = 0});
-    CHECK(run.checkpoint() == before);
+    CHECK((run.checkpoint() == before));
     frost_run dry(n, slanting(), {.water = 0});
     auto const r = dry.run({.paths = 100});
     CHECK(r.paths == 100);
@@ -219,15 +219,15 @@ TEST_CASE("law 16: n paths then m equal n + m, and a batch of one is the sequent
     split.run({.paths = 1});
     split.run({.paths = 1234});
     split.run({.paths = 2765, .batch = 1});
-    CHECK(whole.checkpoint() == split.checkpoint());
+    CHECK((whole.checkpoint() == split.checkpoint()));
 
     frost_run batched(n, slanting(), {.seed = 1});
     frost_run halves(n, slanting(), {.seed = 1});
     batched.run({.paths = 4096, .batch = 32});
     halves.run({.paths = 1024, .batch = 32});
     halves.run({.paths = 3072, .batch = 32});
-    CHECK(batched.checkpoint() == halves.checkpoint());
-    CHECK_FALSE(batched.checkpoint() == whole.checkpoint());
+    CHECK((batched.checkpoint() == halves.checkpoint()));
+    CHECK_FALSE((batched.checkpoint() == whole.checkpoint()));
 }
 
 TEST_CASE("another seed, another history; the same seed, the same") {
@@ -297,7 +297,7 @@ TEST_CASE("marks are checked: indices, and air that is air for good") {
     auto const before = run.checkpoint();
     std::array<cell_index, 2> const both{cell_index{5u}, cell_index{4u}};
     CHECK_THROWS_AS(run.mark(both, cell_state::core), invalid_input);
-    CHECK(run.checkpoint() == before);
+    CHECK((run.checkpoint() == before));
 }
 
 TEST_CASE("reset goes back to the first path and keeps the marks") {
@@ -310,9 +310,9 @@ TEST_CASE("reset goes back to the first path and keeps the marks") {
     CHECK(run.report().cells_detached > 0);
     auto const end = run.checkpoint();
     run.reset();
-    CHECK(run.checkpoint() == start);
+    CHECK((run.checkpoint() == start));
     run.run({.paths = 2000});
-    CHECK(run.checkpoint() == end);
+    CHECK((run.checkpoint() == end));
 }
 
 TEST_CASE("policies, fields and options may be replaced between paths") {
@@ -335,7 +335,7 @@ TEST_CASE("policies, fields and options may be replaced between paths") {
     changed.rain.rain.direction = vec3{0, 0, 0};
     CHECK_THROWS_AS(run.replace(changed), invalid_input);
     CHECK_THROWS_AS(run.replace(frost_options{.water = -1}), invalid_input);
-    CHECK(run.checkpoint() == before);
+    CHECK((run.checkpoint() == before));
 }
 
 TEST_CASE("validate says when no water can enter") {

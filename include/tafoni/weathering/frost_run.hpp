@@ -124,7 +124,7 @@ public:
     /// Marks cells by hand. Core heals nothing; nothing falls because of a mark (see `drop_loose`).
     /// Strong guarantee. O(cells + links).
     /// \throws invalid_input  for an index out of range, or after the first path for air that is to be
-    ///                        anything else: what fell never returns.
+    ///                        anything else: what fell never returns. (A block that fell by hand counts as a path.)
     void mark(std::span<cell_index const> cells, cell_state as) {
         for (cell_index const c : cells) {
             if (c.value >= core_.state.cells.size()) {
@@ -133,13 +133,14 @@ public:
                                                 std::to_string(core_.state.cells.size()),
                                             {.kind = entity::cell, .index = c.value});
             }
-            if (core_.state.count.paths > 0 && as != cell_state::air && core_.state.cells[c.value] == cell_state::air) {
+            if (core_.has_history() && as != cell_state::air && core_.state.cells[c.value] == cell_state::air) {
                 detail::fail<invalid_input>(errc::bad_parameter,
                                             "frost_run::mark: cell " + std::to_string(c.value) + " is air for good",
                                             {.kind = entity::cell, .index = c.value});
             }
         }
         core_.dirty = true;
+        if (!core_.has_history()) std::fill(core_.states.begin(), core_.states.end(), link_state::bonded);
         for (cell_index const c : cells) core_.state.cells[c.value] = core_.state.marks[c.value] = as;
         core_.rebuild();
     }

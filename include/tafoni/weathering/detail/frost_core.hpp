@@ -120,7 +120,13 @@ public:
             if (!r.cells[1].valid() || is_air(r.cells[0]) || is_air(r.cells[1])) continue;
             states[i] = r.life > 0 ? link_state::bonded : link_state::broken;
         }
+        std::vector<link_state> const former = states;
         exposure_memory_.emplace(exposure.start(network, state.cells, states));
+        if (has_history()) {  // what was laid open stays open, also by policies that could not find it again
+            for (std::size_t i = 0; i < states.size(); ++i) {
+                if (states[i] == link_state::pocket && former[i] == link_state::skin) states[i] = link_state::skin;
+            }
+        }
         skin = entry_tree(table.size());
         for (std::size_t i = 0; i < table.size(); ++i) {
             if (network.has_link(link_index{i})) refresh(link_index{i});
@@ -276,6 +282,8 @@ public:
         }
     }
 
+    /// Something has happened that marks do not undo.
+    [[nodiscard]] bool has_history() const noexcept { return state.count.paths > 0 || !state.blocks.empty(); }
     [[nodiscard]] bool is_air(cell_index c) const noexcept { return state.cells[c.value] == cell_state::air; }
 
 private:

@@ -1,0 +1,109 @@
+#include "percolation/box_network.hpp"
+
+#include <tafoni/graph/surface_walk.hpp>
+#include <tafoni/weathering/frost_presets.hpp>
+#include <tafoni/weathering/frost_run.hpp>
+
+#include <catch2/catch.hpp>
+
+using namespace tafoni;
+using tafoni_test::box_network;
+
+namespace {
+
+errc refusal(auto& run, std::span<std::byte const> bytes) {
+    try {
+        run.resume(bytes);
+    } catch (io_error const& e) {
+        return e.code();
+    }
+    return errc{};
+}
+
+}  // namespace
+
+TEST_CASE("a run that was saved and resumed ends in the same bytes") {
+    box_network const n(5, 5, 5);
+    auto const preset = addon_preset();
+    frost_run whole(n, preset.process, preset.options);
+    whole.mark(n.at(2, 2, 0), cell_state::core);
+    whole.run({.paths = 1500});
+    auto const saved = whole.checkpoint();
+    whole.run({.paths = 1500});
+
+    frost_run later(n, preset.process, preset.options);
+    later.run({.paths = 77});  // whatever it did before
+    later.resume(saved);
+    CHECK((later.checkpoint() == saved));
+    CHECK(later.paths() == 1500);
+    later.run({.paths = 1500});
+    CHECK((later.checkpoint() == whole.checkpoint()));
+    CHECK(later.blocks().size() == whole.blocks().size());
+    CHECK(later.report().water_absorbed == whole.report().water_absorbed);
+    CHECK(later.blocks().back().volume == whole.blocks().back().volume);
+    later.reset();
+    CHECK(later.cell(n.at(2, 2, 0)) == cell_state::core);  // marks travel too
+}
+
+TEST_CASE("the paper's exposure depends on history, and resumes all the same") {
+    box_network const n(4, 4, 4);
+    auto const preset = addon_preset();
+    frost_run whole(n, preset.process, preset.options, surface_walk{});
+    whole.run({.paths = 1000});
+    auto const saved = whole.checkpoint();
+    whole.run({.paths = 1000});
+    frost_run later(n, preset.process, preset.options, surface_walk{});
+    later.resume(saved);
+    later.run({.paths = 1000});
+    CHECK((later.checkpoint() == whole.checkpoint()));
+}
+
+TEST_CASE("a checkpoint of another network, other options or other policies is refused") {
+    box_network const n(3, 3, 3);
+    box_network other(3, 3, 3);
+    other.links[5].area = 1.5;
+    auto const preset = paper_preset();
+    frost_run run(n, preset.process, preset.options);
+    run.run({.paths = 50});
+    auto const saved = run.checkpoint();
+    frost_run elsewhere(other, preset.process, preset.options);
+    CHECK(refusal(elsewhere, saved) == errc::checkpoint_mismatch);
+    frost_run seeded(n, preset.process, {.seed = 1});
+    CHECK(refusal(seeded, saved) == errc::checkpoint_mismatch);
+    auto changed = preset.process;
+    changed.wear.harm.k_dmg = 0.6;
+    frost_run harder(n, changed, preset.options);
+    CHECK(refusal(harder, saved) == errc::checkpoint_mismatch);
+    changed = preset.process;
+    changed.flow.resistance.value = 0.6;
+    frost_run denser(n, changed, preset.options);
+    CHECK(refusal(denser, saved) == errc::checkpoint_mismatch);
+    // Replaced between paths, saved, resumed by a run that has the replacement.
+    run.replace(changed);
+    denser.resume(run.checkpoint());
+    CHECK((denser.checkpoint() == run.checkpoint()));
+}
+
+TEST_CASE("a checkpoint cut at any byte or with any byte changed is refused and nothing happens") {
+    box_network const n(2, 2, 2);
+    auto const preset = paper_preset();
+    frost_run run(n, preset.process, preset.options);
+    run.run({.paths = 400});
+    auto const saved = run.checkpoint();
+    REQUIRE(run.blocks().size() > 0);
+    frost_run victim(n, preset.process, preset.options);
+    victim.run({.paths = 7});
+    auto const before = victim.checkpoint();
+    for (std::size_t k = 0; k < saved.size(); ++k) {
+        INFO("byte " << k);
+        REQUIRE(refusal(victim, std::span(saved).first(k)) != errc{});
+        auto damaged = saved;
+        damaged[k] ^= std::byte{0x10};
+        REQUIRE(refusal(victim, damaged) != errc{});
+    }
+    auto longer = saved;
+    longer.push_back(std::byte{0});
+    CHECK(refusal(victim, longer) == errc::bad_syntax);
+    CHECK(refusal(victim, {}) == errc::wrong_format);
+    CHECK((victim.checkpoint() == before));
+}

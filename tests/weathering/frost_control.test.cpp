@@ -1,0 +1,186 @@
+#include "percolation/box_network.hpp"
+
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/weathering/frost_presets.hpp>
+#include <tafoni/weathering/frost_run.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <stdexcept>
+
+using namespace tafoni;
+using tafoni_test::box_network;
+
+namespace {
+
+frost_wedging<> slanting() {
+    frost_wedging<> p;
+    p.rain.rain.direction = normalized(vec3{1, -0.5, -0.5});
+    return p;
+}
+
+/// Throws at a chosen call; every role of a process.
+struct fuse {
+    long* left;
+    void burn() const {
+        if (--*left == 0) throw std::runtime_error("fuse");
+    }
+};
+struct fused_rain : fuse {
+    vec3 draw(stream& s) const { burn(); return slanting().rain.draw(s); }
+    double acceptance(link_view const& l, vec3 const& d) const { burn(); return slanting().rain.acceptance(l, d); }
+};
+struct fused_flow : fuse {
+    double weight(link_view const& a, link_view const& b, water const& w) const { burn(); return gravity_flow{}.weight(a, b, w); }
+};
+struct fused_absorb : fuse {
+    double absorbed(link_view const& l, water const& w, link_scale const& s) const { burn(); return surface_absorption{}.absorbed(l, w, s); }
+    double soak_chance(link_view const& l, water const& w) const { burn(); return depletion_soaking{}.soak_chance(l, w); }
+};
+struct fused_wear : fuse {
+    double damage(link_view const& l, double w, link_scale const& s) const { burn(); return surface_damage{}.damage(l, w, s); }
+    double break_chance(link_view const& l) const { burn(); return low_life_breakage{}.break_chance(l); }
+    falling decide(part const& a, part const& b) const { burn(); return smaller_part_falls{}.decide(a, b); }
+};
+
+}  // namespace
+
+TEST_CASE("C1: stopping at any tick leaves a state that goes on to the same bytes") {
+    box_network const n(4, 4, 4);
+    frost_run whole(n, slanting());
+    int ticks = 0;
+    run_context const counting{.on_progress = [&](progress_event const& e) {
+        CHECK(e.stage == "weather");
+        ++ticks;
+        return step_control::proceed;
+    }};
+    whole.run({.paths = 600}, counting);
+    REQUIRE(ticks > 100);
+    auto const end = whole.checkpoint();
+    for (int k = 1; k <= ticks; ++k) {
+        frost_run run(n, slanting());
+        int seen = 0;
+        double last = -1;
+        auto const r = run.run({.paths = 600}, {.on_progress = [&](progress_event const& e) {
+            REQUIRE(e.fraction >= last);
+            last = e.fraction;
+            return ++seen == k ? step_control::stop : step_control::proceed;
+        }});
+        REQUIRE(r.stopped == (k < ticks ? stop_reason::observer : stop_reason::finished));
+        run.run({.paths = 600 - run.paths()});
+        REQUIRE((run.checkpoint() == end));
+    }
+}
+
+TEST_CASE("C2: a policy that throws at any call leaves the state after the last complete path") {
+    box_network const n(3, 3, 3);
+    for (std::uint32_t const batch : {1u, 8u}) {
+        long left = -1;
+        frost_wedging<fused_rain, fused_flow, fused_absorb, fused_wear> const p{
+            .rain = {{&left}}, .flow = {{&left}}, .absorb = {{&left}}, .wear = {{&left}}};
+        frost_run whole(n, p);
+        whole.run({.paths = 640, .batch = batch});
+        long const calls = -1 - left;
+        REQUIRE(whole.report().cells_detached > 1);
+        auto const end = whole.checkpoint();
+        for (long k = 1; k <= calls; k += k < 300 ? 1 : 97) {
+            left = -1;
+            frost_run run(n, p);
+            left = k;
+            bool thrown = false;
+            try {
+                run.run({.paths = 640, .batch = batch});
+            } catch (std::runtime_error const&) {
+                thrown = true;
+            }
+            REQUIRE(thrown);
+            REQUIRE(run.paths() < 640);
+            REQUIRE(run.paths() % batch == 0);
+            left = -1;
+            if (k % 16 == 0) {  // the state is exactly that of as many paths
+                frost_run same(n, p);
+                same.run({.paths = run.paths(), .batch = batch});
+                REQUIRE((run.checkpoint() == same.checkpoint()));
+            }
+            run.run({.paths = 640 - run.paths(), .batch = batch});
+            REQUIRE((run.checkpoint() == end));
+        }
+    }
+}
+
+TEST_CASE("a run stops at the first break or the first detachment, and snapshots come when asked for") {
+    box_network const n(4, 4, 4);
+    frost_run run(n, slanting());
+    auto const broken = run.run({.paths = 5000, .stop = stop_when::first_break});
+    CHECK(broken.stopped == stop_reason::first_break);
+    CHECK(broken.links_broken >= 1);
+    auto const fallen = run.run({.paths = 5000, .stop = stop_when::first_detachment});
+    CHECK(fallen.stopped == stop_reason::first_detachment);
+    CHECK(fallen.blocks >= 1);
+    CHECK(fallen.paths < 5000);
+
+    frost_run snapped(n, slanting());
+    std::vector<std::uint64_t> at;
+    auto const r = snapped.run({.paths = 100, .snapshot_every = 30, .on_snapshot = [&](std::uint64_t paths) {
+        CHECK(paths == snapped.paths());
+        at.push_back(paths);
+        return paths == 90 ? step_control::stop : step_control::proceed;
+    }});
+    CHECK(at == std::vector<std::uint64_t>{30, 60, 90});
+    CHECK(r.stopped == stop_reason::observer);
+    CHECK(r.paths == 90);
+}
+
+TEST_CASE("an observer that throws loses nothing") {
+    box_network const n(4, 4, 4);
+    frost_run whole(n, slanting());
+    whole.run({.paths = 300});
+    frost_run run(n, slanting());
+    for (int k = 0; k < 5; ++k) {
+        CHECK_THROWS_AS(run.run({.paths = 300 - run.paths()},
+                                {.on_progress = [&](progress_event const& e) -> step_control {
+                                    if (e.fraction > 0.1) throw std::runtime_error("observer");
+                                    return step_control::proceed;
+                                }}),
+                        std::runtime_error);
+    }
+    run.run({.paths = 300 - run.paths()});
+    CHECK((run.checkpoint() == whole.checkpoint()));
+}
+
+TEST_CASE("a batch has the same bits on any number of threads", "[threads]") {
+    box_network const n(6, 6, 6);
+    auto const preset = addon_preset();
+    frost_run serial(n, preset.process, preset.options);
+    serial.run({.paths = 4000, .batch = 500});
+    auto const expected = serial.checkpoint();
+    for (std::size_t const threads : {1u, 2u, 3u, 4u, 7u}) {
+        thread_pool const pool(threads);
+        frost_run run(n, preset.process, preset.options);
+        run.run({.paths = 4000, .batch = 500}, {}, pool);
+        CHECK((run.checkpoint() == expected));
+    }
+}
+
+TEST_CASE("an exception from a worker thread reaches the caller and loses nothing", "[threads]") {
+    box_network const n(4, 4, 4);
+    struct picky {
+        double weight(link_view const& a, link_view const& b, water const& w) const {
+            if (w.step == 6) throw std::runtime_error("deep");
+            return gravity_flow{}.weight(a, b, w);
+        }
+    };
+    frost_run run(n, frost_wedging{.rain = slanting().rain, .flow = picky{}});
+    thread_pool const pool(4);
+    bool thrown = false;
+    for (int k = 0; k < 200 && !thrown; ++k) {
+        auto const before = run.checkpoint();
+        try {
+            run.run({.paths = 64, .batch = 64}, {}, pool);
+        } catch (std::runtime_error const&) {
+            thrown = true;
+            CHECK((run.checkpoint() == before));
+        }
+    }
+    CHECK(thrown);
+}
