@@ -306,6 +306,20 @@ TEST_CASE("M15: cavities, islands in cavities and shells in shells add up as a c
     CHECK(attempt(twice).body.volume == Approx(28).epsilon(1e-15));
 }
 
+TEST_CASE("M15: a block with a thousand cavities is made in time, and one bubble outside it is found") {
+    indexed_mesh m = box(vec3{0, 0, 0}, vec3{10, 10, 10});
+    for (int i = 0; i < 1000; ++i) {
+        vec3 const lo{i / 100 + 0.25, i / 10 % 10 + 0.25, i % 10 + 0.25};
+        append(m, inside_out(box(lo, vec3{lo[0] + 0.5, lo[1] + 0.5, lo[2] + 0.5})));
+    }
+    CHECK(attempt(m).body.volume == Approx(1000 - 1000 * 0.125).epsilon(1e-13));
+    append(m, inside_out(box(vec3{4, 4, 11}, vec3{5, 5, 12})));
+    outcome const r = attempt(m);
+    CHECK(r.code == errc::inverted_orientation);
+    CHECK(r.place.index == 6 * 1001);
+    CHECK(contains(r.text, "1 of 1002 shells"));
+}
+
 TEST_CASE("M16: a closed surface without volume is refused") {
     indexed_mesh flat = tafoni_test::tetrahedron();
     flat.positions[3] = vec3{0.3, 0.2, 0};

@@ -4,10 +4,12 @@
 #define TAFONI_GEOMETRY_DETAIL_SHELL_NESTING_HPP
 
 #include <tafoni/core/error.hpp>
+#include <tafoni/geometry/bvh.hpp>
 #include <tafoni/geometry/detail/edge_table.hpp>
 #include <tafoni/geometry/solid.hpp>
 #include <tafoni/geometry/winding_number.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,24 +79,37 @@ struct shell_table {
 }
 
 /// Throws `inverted_orientation` for a shell of negative volume that lies inside no other shell.
-/// Shells without volume may face either way. O(triangles), plus O(triangles) per inward shell.
+/// Shells without volume may face either way. O(triangles), and O(log n + triangles above) per inward
+/// shell where there are many.
 inline void require_outward_shells(char const* who, solid const& s, std::vector<volume_term> const& terms) {
     shell_table const table = find_shells(s, terms);
+    std::vector<std::uint32_t> inward;
+    for (std::uint32_t i = 0; i < table.shells.size(); ++i) {
+        if (table.shells[i].six_volume < -volume_noise * table.shells[i].six_size) inward.push_back(i);
+    }
+    if (inward.empty()) return;
+    // How often all shells go around the lowest vertex of an inward one, less what it adds itself.
+    std::vector<int> around(table.shells.size(), 0);
+    auto const crossing = [&](std::size_t t, vec3 const& p) {
+        auto const& tri = s.triangles[t];
+        return upward_crossing(s.positions[tri[0]], s.positions[tri[1]], s.positions[tri[2]], p);
+    };
+    if (table.shells.size() > 1) {
+        for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+            std::uint32_t const i = table.shell_of[t];
+            around[i] -= crossing(t, table.shells[i].lowest);
+        }
+        std::optional<bvh> tree;
+        if (inward.size() > 8) tree.emplace(s);
+        for (std::uint32_t const i : inward) {
+            vec3 const& p = table.shells[i].lowest;
+            around[i] += tree ? tree->winding_number(p) : winding_number(s, p);
+        }
+    }
     std::size_t inverted = 0;
     std::uint32_t first = 0;
-    for (std::uint32_t i = 0; i < table.shells.size(); ++i) {
-        auto const& shell = table.shells[i];
-        if (!(shell.six_volume < -volume_noise * shell.six_size)) continue;
-        int around = 0;
-        if (table.shells.size() > 1) {
-            for (std::size_t t = 0; t < s.triangles.size(); ++t) {
-                std::uint32_t const other = table.shell_of[t];
-                if (other == i || !table.shells[other].bounds.contains(shell.lowest)) continue;
-                auto const& tri = s.triangles[t];
-                around += upward_crossing(s.positions[tri[0]], s.positions[tri[1]], s.positions[tri[2]], shell.lowest);
-            }
-        }
-        if (around > 0) continue;
+    for (std::uint32_t const i : inward) {
+        if (around[i] > 0) continue;
         if (inverted++ == 0) first = i;
     }
     if (inverted == 0) return;
