@@ -167,7 +167,7 @@ private:
         });
     }
 
-    /// Nearer children first; `key` of a box is a lower bound, `wanted` may grow stricter on the way.
+    /// Nearer children first; `key` of a box is a lower bound or NaN, `wanted` may grow stricter on the way.
     template <class Key, class Wanted, class Leaf>
     void walk(Key const& key, Wanted const& wanted, Leaf const& leaf) const {
         struct entry {

@@ -82,16 +82,17 @@ public:
         inverse_ = 1 / direction[main_];
     }
 
-    /// Where the ray enters the box, as a multiple of the direction; infinity when it misses. The
+    /// Where the ray enters the box, as a multiple of the direction; NaN when it misses. The
     /// interval is widened by its rounding, so that no triangle in the box is lost.
     [[nodiscard]] double entry(box3 const& b) const noexcept {
+        double const none = std::numeric_limits<double>::quiet_NaN();
         double in = 0;
         double out = std::numeric_limits<double>::infinity();
         for (int a = 0; a < 3; ++a) {
             double const lo = b.lo[a] - origin_[a];
             double const hi = b.hi[a] - origin_[a];
             if (direction_[a] == 0) {
-                if (lo > 0 || hi < 0) return std::numeric_limits<double>::infinity();
+                if (lo > 0 || hi < 0) return none;
                 continue;
             }
             double first = lo / direction_[a];
@@ -102,7 +103,7 @@ public:
             if (first > in) in = first;
             if (last < out) out = last;
         }
-        return in <= out ? in : std::numeric_limits<double>::infinity();
+        return in <= out ? in : none;
     }
 
     /// The multiple of the direction at which the ray meets the triangle, NaN when it does not.
