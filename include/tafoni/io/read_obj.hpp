@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -27,6 +28,7 @@ public:
         : source_(source), at_(source.require_text()), end_(source.end()), limits_(limits) {}
 
     mesh_file parse() {
+        reserve();
         while (at_ != end_) statement();
         finish();
         return std::move(out_);
@@ -41,6 +43,24 @@ public:
     }
 
 private:
+    /// Room for what lines that end with LF declare; another file grows as it is read.
+    void reserve() {
+        std::size_t vertices = 0;
+        std::size_t faces = 0;
+        for (char const* line = at_; end_ - line > 2;) {
+            if (line[1] == ' ') {
+                vertices += line[0] == 'v' ? 1 : 0;
+                faces += line[0] == 'f' ? 1 : 0;
+            }
+            auto const* const stop = static_cast<char const*>(std::memchr(line, '\n', static_cast<std::size_t>(end_ - line)));
+            if (stop == nullptr) break;
+            line = stop + 1;
+        }
+        out_.mesh.positions.reserve(vertices);
+        out_.mesh.offsets.reserve(faces + 1);
+        out_.mesh.corners.reserve(3 * faces);
+    }
+
     void statement() {
         skip_blanks();
         if (at_ == end_) return;

@@ -72,6 +72,7 @@ template <class T>
     out.mesh.offsets.reserve(std::size_t{count} + 1);
     out.mesh.corners.reserve(std::size_t{3} * count);
     exact_welder weld(out.mesh.positions);
+    weld.reserve(count / 2 + 2);  // a closed surface has half as many vertices as triangles
     mesh_channel attribute{"attribute", {}, channel_type::uint16};
     for (std::uint32_t t = 0; t < count; ++t, at += 50) {
         for (std::size_t k = 0; k < 3; ++k) {

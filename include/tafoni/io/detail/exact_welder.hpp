@@ -16,6 +16,15 @@ class exact_welder {
 public:
     explicit exact_welder(std::vector<vec3>& points) : points_(points), slots_(16, empty) {}
 
+    /// Room for so many different points.
+    void reserve(std::size_t count) {
+        points_.reserve(count);
+        std::size_t slots = slots_.size();
+        while (slots < 2 * count) slots *= 2;
+        slots_ = std::vector<std::uint32_t>(slots, empty);
+        fill();
+    }
+
     /// The index of the point equal to `p`, which is appended if there is none. O(1) expected.
     std::uint32_t index_of(vec3 const& p) {
         if (2 * points_.size() >= slots_.size()) grow();
@@ -47,6 +56,9 @@ private:
     }
     void grow() {
         slots_ = std::vector<std::uint32_t>(2 * slots_.size(), empty);
+        fill();
+    }
+    void fill() {
         for (std::size_t i = 0; i < points_.size(); ++i) slots_[find(points_[i])] = static_cast<std::uint32_t>(i);
     }
 

@@ -142,6 +142,7 @@ struct parsed_integer {
 };
 
 [[nodiscard]] inline parsed_integer parse_integer(char const* first, char const* end) noexcept {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
     parsed_integer r;
     char const* at = first;
     r.negative = at != end && *at == '-';
@@ -150,7 +151,7 @@ struct parsed_integer {
     bool overflow = false;
     for (; at != end && is_digit(*at); ++at) {
         std::uint64_t const d = static_cast<std::uint64_t>(*at - '0');
-        if (r.magnitude > (std::numeric_limits<std::uint64_t>::max() - d) / 10) overflow = true;
+        if (r.magnitude >= most / 10 && (r.magnitude > most / 10 || d > most % 10)) overflow = true;
         r.magnitude = 10 * r.magnitude + d;
     }
     r.next = at;
