@@ -100,6 +100,7 @@ void assemble_diagram(Diagram& d, Executor const& pool, run_context const& conte
             cell_builder builder(d.sites, tree, box);
             for (std::size_t k = done + b; k < done + e; ++k) {
                 std::size_t const stop = std::min(leaves, (k + 1) * leaves_per_block);
+                cell_builder::reserve(blocks[k], tree.nodes[tree.leaves[stop - 1]].end - tree.nodes[tree.leaves[k * leaves_per_block]].begin);
                 for (std::size_t l = k * leaves_per_block; l < stop; ++l) builder.build_leaf(tree.leaves[l], blocks[k]);
             }
         });

@@ -51,6 +51,16 @@ public:
     cell_builder(std::span<ivec3 const> sites, site_tree const& tree, lattice_box const& box)
         : sites_(sites), tree_(tree), box_(box), small_(std::make_unique<voronoi_cell<64>>()) {}
 
+    /// Room for the cells of `count` usual sites.
+    static void reserve(cell_block& out, std::size_t count) {
+        out.cells.reserve(count);
+        out.neighbour.reserve(17 * count);
+        out.degree.reserve(17 * count);
+        out.corner_small.reserve(180 * count);
+        out.own_key.reserve(8 * count);
+        out.own_position.reserve(8 * count);
+    }
+
     void build_leaf(std::uint32_t leaf, cell_block& out) {
         site_tree::node const& home = tree_.nodes[leaf];
         double const reach = reach_factor * static_cast<double>(home.spacing);
@@ -69,7 +79,7 @@ public:
 
 private:
     static constexpr double reach_factor = 3.2;
-    static constexpr float near_factor = 1.9F;
+    static constexpr float near_factor = 2.6F;
 
     [[nodiscard]] static double distance2(site_tree::node const& a, site_tree::node const& b) noexcept {
         double s = 0;
@@ -118,7 +128,8 @@ private:
             queue_[count] = static_cast<std::uint32_t>(k);
             count += static_cast<std::size_t>((distance2_[k] > lo) & (distance2_[k] <= hi));
         }
-        constexpr std::size_t shells = 32;
+        if (count == 0) return true;
+        constexpr std::size_t shells = 64;
         std::array<std::uint32_t, shells + 1> begin{};
         float const base = lo > 0 ? lo : 0;
         float const span = std::min(hi, usual) - base;
@@ -129,10 +140,11 @@ private:
         };
         for (std::size_t k = 0; k < count; ++k) ++begin[shell(queue_[k]) + 1];
         for (std::size_t k = 0; k < shells; ++k) begin[k + 1] += begin[k];
-        for (std::size_t k = 0; k < count; ++k) sorted_[begin[shell(queue_[k])]++] = id_[queue_[k]];
+        for (std::size_t k = 0; k < count; ++k) sorted_[begin[shell(queue_[k])]++] = queue_[k];
         for (std::size_t k = 0; k < count; ++k) {
             std::uint32_t const s = sorted_[k];
-            if (s != self && !cell.cut(sites_[s], s)) return false;
+            if (static_cast<double>(distance2_[s]) > 4 * cell.radius2() + slack_) continue;
+            if (id_[s] != self && !cell.cut(sites_[id_[s]], id_[s])) return false;
         }
         return true;
     }
@@ -155,15 +167,20 @@ private:
         }
         float const inner = near_factor * home.spacing;
         float const inner2 = inner * inner;
-        if (!cut_between(cell, i, -1, inner2, inner2)) return false;
         // Single precision sees all sites from the leaf's corner; the slack is far above its error.
         double size2 = reach2_;
         for (std::size_t a = 0; a < 3; ++a) {
             auto const side = static_cast<double>(home.hi[a] - home.lo[a]);
             size2 += side * side;
         }
-        double const bound = 4 * cell.radius2() + 1e-5 * (size2 + 4 * cell.radius2());
-        if (!cut_between(cell, i, inner2, static_cast<float>(bound), static_cast<float>(4 * size2))) return false;
+        slack_ = 1e-5 * (size2 + 4 * cell.radius2());
+        if (!cut_between(cell, i, -1, inner2, inner2)) return false;
+        slack_ = 1e-5 * (size2 + 4 * cell.radius2());
+        double const bound = 4 * cell.radius2() + slack_;
+        if (bound > static_cast<double>(inner2) &&
+            !cut_between(cell, i, inner2, static_cast<float>(bound), static_cast<float>(4 * size2))) {
+            return false;
+        }
         return 4 * cell.radius2() <= reach2_ || search(cell, home, i);
     }
 
@@ -311,6 +328,7 @@ private:
     std::unique_ptr<voronoi_cell<64>> small_;
     std::unique_ptr<voronoi_cell<0>> large_;
     double reach2_ = 0;
+    double slack_ = 0;
     std::vector<std::uint32_t> id_;
     std::array<std::vector<float>, 3> near_;
     std::vector<float> distance2_;

@@ -72,10 +72,8 @@ struct double_plane {
 
 /// Where three planes of the cell of `base` meet, by Cramer's rule; exactly where that is too flat.
 [[nodiscard]] inline vertex_estimate solve(ivec3 const& base, exact::plane const& pa, exact::plane const& pb,
-                                           exact::plane const& pc) noexcept {
-    double_plane const a = to_double_plane(base, pa);
-    double_plane const b = to_double_plane(base, pb);
-    double_plane const c = to_double_plane(base, pc);
+                                           exact::plane const& pc, double_plane const& a, double_plane const& b,
+                                           double_plane const& c) noexcept {
     double const bcx = b.y * c.z - b.z * c.y;
     double const bcy = b.z * c.x - b.x * c.z;
     double const bcz = b.x * c.y - b.y * c.x;
@@ -96,6 +94,11 @@ struct double_plane {
     // Each term of the numerators is at most |a||b||c||v|: about 50 roundings of that, over det.
     v.error = 0x1p-47 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z)) * size * std::fabs(f);
     return v;
+}
+
+[[nodiscard]] inline vertex_estimate solve(ivec3 const& base, exact::plane const& a, exact::plane const& b,
+                                           exact::plane const& c) noexcept {
+    return solve(base, a, b, c, to_double_plane(base, a), to_double_plane(base, b), to_double_plane(base, c));
 }
 
 #if defined(__AVX__)
@@ -134,6 +137,7 @@ public:
             bool const upper = w % 2 != 0;
             auto const a = static_cast<std::size_t>(axis);
             plane_[w] = exact::wall{axis, upper, upper ? box.hi[a] : box.lo[a]};
+            double_[w] = to_double_plane(site.at, plane_[w]);
             id_[w] = wall_id + w;
             degree_[w] = 4;
         }
@@ -177,7 +181,7 @@ public:
         if (unsure != 0) decide_exactly(other, n1, floor);
         if (removed_count_ == 0) return true;
         for (std::size_t k = 0; k < removed_count_; ++k) flag_[removed_[k]] = 1;
-        return replace_removed(other, n1);
+        return replace_removed(other, {nx, ny, nz, h, 2 * h}, n1);
     }
 
     /// Square of the distance of the farthest vertex from the site, not less than the true one.
@@ -217,12 +221,13 @@ public:
     /// O(degree log vertices) without tables, after `prepare_walks`.
     template <class Visit>
     void walk(std::uint32_t p, std::uint32_t first, Visit const& visit) const {
+        triple const& t = triple_[first];
         std::uint32_t v = first;
+        std::uint32_t before = t[0] == p ? t[2] : t[1] == p ? t[0] : t[1];
         do {
             visit(v);
-            triple const& t = triple_[v];
-            id const before = t[0] == p ? t[2] : t[1] == p ? t[0] : t[1];
-            v = holder(static_cast<id>(p), before);
+            v = holder(static_cast<id>(p), static_cast<id>(before));
+            before ^= p ^ third_[v];  // the plane at v that is neither p nor the one just crossed
         } while (v != first);
     }
 
@@ -268,11 +273,13 @@ private:
                 std::size_t const n = 2 * v;
                 for (auto* b : {&x_, &y_, &z_, &error_, &r2_, &side_}) b->resize(n);
                 triple_.resize(n);
+                third_.resize(n);
                 flag_.resize(n);
                 removed_.resize(n);
             }
             if (plane_.size() < planes) {
                 plane_.resize(2 * planes);
+                double_.resize(2 * planes);
                 id_.resize(2 * planes);
                 degree_.resize(2 * planes);
             }
@@ -281,6 +288,7 @@ private:
 
     void set(std::uint32_t v, triple const& t) noexcept {
         triple_[v] = t;
+        third_[v] = static_cast<id>(t[0] ^ t[1] ^ t[2]);
         if constexpr (fixed) {
             auto const w = static_cast<std::uint8_t>(v);
             holder_[t[0] * Planes + t[1]] = w;
@@ -387,7 +395,7 @@ private:
         }
     }
 
-    [[nodiscard]] bool replace_removed(exact::site const& other, double n1) {
+    [[nodiscard]] bool replace_removed(exact::site const& other, double_plane const& plane, double n1) {
         TAFONI_ASSERT(removed_count_ < count_, "a cell holds its site");
         id p{};
         if (!free_.empty()) {
@@ -404,6 +412,7 @@ private:
             grow(count_, planes_);
         }
         plane_[p] = other;
+        double_[p] = plane;
         id_[p] = other.rank;
         find_open_edges();
         degree_[p] = static_cast<std::uint32_t>(open_count_);
@@ -456,10 +465,10 @@ private:
                 // Off the true edge by at most the ends' errors; along it by that over the sine of the angle.
                 double const off = std::max(error_[e.removed], error_[e.kept]) + 0x1p-48 * radius_;
                 v.error = off * (1 + n1 * (std::fabs(dx) + std::fabs(dy) + std::fabs(dz)) * f);
-                if (v.error < 0x1p-34 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z))) return v;
+                if (v.error < 0x1p-28 * (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z))) return v;
             }
         }
-        return solve(site_.at, plane_[e.a], plane_[e.b], plane_[p]);
+        return solve(site_.at, plane_[e.a], plane_[e.b], plane_[p], double_[e.a], double_[e.b], double_[p]);
     }
 
     exact::site site_{};
@@ -474,8 +483,10 @@ private:
     alignas(32) buffer<double, max_vertices + 4> r2_{};
     alignas(32) buffer<double, max_vertices + 4> side_{};
     buffer<triple, max_vertices + 4> triple_{};
+    buffer<id, max_vertices + 4> third_{};  ///< the planes of a vertex, xored
     buffer<std::uint8_t, max_vertices + 4> flag_{};
     buffer<exact::plane, Planes> plane_{};
+    buffer<double_plane, Planes> double_{};
     buffer<std::uint32_t, Planes> id_{};
     buffer<std::uint32_t, Planes> degree_{};
     buffer<std::uint8_t, Planes * Planes> holder_{};
