@@ -199,6 +199,15 @@ TEST_CASE("two boxes and one site make two shards of it, a cavity makes one with
     REQUIRE(h.cell_count() == 1);
     CHECK(h.volumes[0] == Approx(26).epsilon(1e-12));
     CHECK(h.interior_face_count == 0);
+    CHECK(h.merged_slivers == 0);
+
+    // Of two pieces in one cell the cavity belongs to the one around it, not to the larger one.
+    auto mesh = tafoni_test::box_with_cavity();
+    tafoni_test::append(mesh, tafoni_test::box(vec3{4, 0, 0}, vec3{8, 4, 4}));
+    auto const two = voronoi_shards(make_solid(mesh), std::vector<vec3>{vec3{0.1, 0.1, 0.1}});
+    REQUIRE(two.cell_count() == 2);
+    CHECK(std::min(two.volumes[0], two.volumes[1]) == Approx(26).epsilon(1e-12));
+    CHECK(std::max(two.volumes[0], two.volumes[1]) == Approx(64).epsilon(1e-12));
 }
 
 TEST_CASE("a face around a bore keeps it as a hole loop") {

@@ -19,7 +19,8 @@ struct surface_normals_fn {
     ///
     /// On the skin it is the mean, weighted by area, of the triangles around the vertex that lie on the
     /// same smooth patch, so edges between patches stay sharp and a break does not bend the light on
-    /// the skin beside it. Fresh and artificial triangles have their own normal. Zero where a triangle has no area.
+    /// the skin beside it. Fresh and artificial triangles have their own normal, those without area that of
+    /// the face they are cut from; zero where that has no area either.
     /// O(n log n).
     [[nodiscard]] std::vector<vec3> operator()(shard_surface const& s, shard_complex const& c) const {
         std::size_t const corners = s.mesh.corners.size();
@@ -51,8 +52,23 @@ struct surface_normals_fn {
             }
             for (std::size_t e = first; e < k; ++e) normals[smooth[e].corner] = sum;
         }
-        for (vec3& n : normals) n = normalized(n);
+        for (std::size_t k = 0; k < corners; ++k) {
+            vec3& n = normals[k];
+            if (!(squared_length(n) > 0)) n = of_face(c, s.face[k / 3], s.cell[k / 3]);
+            n = normalized(n);
+        }
         return normals;
+    }
+
+private:
+    /// Out of `cell`; for triangles without area.
+    [[nodiscard]] static vec3 of_face(shard_complex const& c, face_index f, cell_index cell) {
+        vec3 sum{0, 0, 0};
+        for (std::size_t l = 0; l < c.loop_count(f); ++l) {
+            vec3 const a = doubled_area(c.face_loop(f, l), [&c](vertex_index v) { return c.position(v); });
+            sum = vec3{sum[0] + a[0], sum[1] + a[1], sum[2] + a[2]};
+        }
+        return c.faces[f.value].front == cell ? sum : vec3{-sum[0], -sum[1], -sum[2]};
     }
 };
 
