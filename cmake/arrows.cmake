@@ -1,4 +1,4 @@
-# cmake -P cmake/arrows.cmake: fails on an #include that points up the house.
+# cmake -P cmake/arrows.cmake: fails on an #include that points up the house, and on what no header may contain.
 # A part may include parts of its own level and below; io, interop and testing see everything, nothing sees them.
 
 set(level_core 0)
@@ -18,6 +18,7 @@ set(level_io 9)
 set(level_interop 9)
 set(level_testing 9)
 
+cmake_minimum_required(VERSION 3.25)
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/../include/tafoni" ABSOLUTE)
 file(GLOB_RECURSE headers RELATIVE "${root}" "${root}/*/*.hpp")
 set(wrong 0)
@@ -53,6 +54,16 @@ foreach(header IN LISTS headers)
     file(STRINGS "${root}/${header}" heavy REGEX "^#include <(iostream|regex|execution)>")
     if(heavy)
         message(SEND_ERROR "${header}: ${heavy} is too heavy for a header")
+    endif()
+    # With clang and libstdc++ 12 these warn about a deprecated function inside the standard library.
+    file(STRINGS "${root}/${header}" buffered REGEX "std::(stable_sort|stable_partition|inplace_merge)")
+    if(buffered)
+        message(SEND_ERROR "${header}: a host with clang and -Werror cannot compile: ${buffered}")
+    endif()
+    file(STRINGS "${root}/${header}" lines)
+    list(LENGTH lines length)
+    if(length GREATER 400)
+        message(SEND_ERROR "${header} has ${length} lines, more than 400")
     endif()
 endforeach()
 message(STATUS "include arrows checked")
