@@ -211,33 +211,49 @@ public:
         ++state.count.links_broken;
     }
 
-    /// One connectivity check for all bonds broken since; parts that the rule drops become air.
+    /// Looks once what all bonds broken since have loosened; parts that the rule drops become air.
+    ///
+    /// Bond by bond, since the two ends of one bond lie close together; nothing falls until all are cut.
     void settle() {
         auto const start = std::chrono::steady_clock::now();
-        auto const found = bonds.break_links(table.network(), broken_);
-        fragments_.assign(found.begin(), found.end());
-        verdicts_.assign(fragments_.size(), 0);
-        // Among the fragments of one part the rule is asked pair by pair, against the one that stands so far.
-        for (std::size_t begin = 0; begin < fragments_.size();) {
-            std::size_t const none = fragments_.size();
-            std::size_t stands = none;
-            std::size_t end = begin;
-            for (; end < fragments_.size() && fragments_[end].group == fragments_[begin].group; ++end) {
-                if (stands == none) {
-                    stands = end;
-                    continue;
-                }
-                falling const verdict = process.wear.decide(fragments_[stands].totals, fragments_[end].totals);
-                bool const first = verdict == falling::first || verdict == falling::both;
-                bool const second = verdict == falling::second || verdict == falling::both;
-                if (first) verdicts_[stands] = 1;
-                if (second) verdicts_[end] = 1;
-                if (first) stands = second ? none : end;
-            }
-            begin = end;
+        pieces_.clear();
+        std::uint32_t wholes = 0;
+        std::uint32_t order = 0;
+        for (link_index const l : broken_) {
+            std::uint32_t const whole = bonds.component_of(table[l].cells[0]);
+            auto const parted = bonds.break_link(table.network(), l);
+            if (!parted) continue;
+            auto const known = std::find_if(pieces_.begin(), pieces_.end(),
+                                            [&](piece const& p) { return p.component == whole; });
+            std::uint32_t const of = known != pieces_.end() ? known->whole : wholes++;
+            if (known != pieces_.end()) pieces_.erase(known);
+            for (std::uint32_t const component : parted->components) pieces_.push_back({of, order++, component, false});
         }
-        for (std::size_t k = 0; k < fragments_.size(); ++k) {
-            if (verdicts_[k] != 0) fall(fragments_[k].component);
+        std::sort(pieces_.begin(), pieces_.end(), [](piece const& a, piece const& b) {
+            return a.whole != b.whole ? a.whole < b.whole : a.order < b.order;
+        });
+        // Among the pieces of one part the rule is asked pair by pair, against the one that stands so far.
+        piece* stands = nullptr;
+        for (piece& p : pieces_) {
+            if (stands == nullptr || stands->whole != p.whole) {
+                stands = &p;
+                continue;
+            }
+            part a = bonds.totals(stands->component);
+            part b = bonds.totals(p.component);
+            if (a.volume == b.volume) {
+                a.lowest_cell = bonds.cells_of(stands->component).front();
+                b.lowest_cell = bonds.cells_of(p.component).front();
+            }
+            falling const verdict = process.wear.decide(a, b);
+            bool const first = verdict == falling::first || verdict == falling::both;
+            bool const second = verdict == falling::second || verdict == falling::both;
+            if (first) stands->falls = true;
+            if (second) p.falls = true;
+            if (first) stands = second ? nullptr : &p;
+        }
+        for (piece const& p : pieces_) {
+            if (p.falls) fall(p.component);
         }
         detach_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
@@ -296,6 +312,13 @@ private:
         double life = 0;
     };
 
+    struct piece {
+        std::uint32_t whole = 0;  ///< pieces of one former part share it
+        std::uint32_t order = 0;
+        std::uint32_t component = 0;
+        bool falls = false;
+    };
+
     /// Books one path and wears its bonds.
     void apply(std::uint64_t path, path_trace const& trace, std::span<path_visit const> visits) {
         frost_counters& count = state.count;
@@ -350,8 +373,7 @@ private:
     std::vector<link_index> broken_{};
     std::vector<std::pair<cell_index, cell_state>> fallen_{};
     std::vector<std::pair<link_index, link_state>> former_{};
-    std::vector<fragment> fragments_{};
-    std::vector<std::uint8_t> verdicts_{};
+    std::vector<piece> pieces_{};
     std::optional<typename Exposure::state> exposure_memory_{};
     exposure_change change_{};
 };
