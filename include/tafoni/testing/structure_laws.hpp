@@ -4,14 +4,18 @@
 #define TAFONI_TESTING_STRUCTURE_LAWS_HPP
 
 #include <tafoni/core/executor.hpp>
+#include <tafoni/core/random.hpp>
 #include <tafoni/decomposition/concepts.hpp>
 #include <tafoni/decomposition/sites.hpp>
 #include <tafoni/graph/concepts.hpp>
+#include <tafoni/graph/exposure.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -123,6 +127,67 @@ template <cell_complex C>
         double const v = c.cell_volume(cell_index{i});
         law(v > 0, "cell volumes are positive");
         law(std::fabs(v - enclosed[i]) <= 1e-9 * cube, "cell volumes are those that the faces enclose");
+    }
+    return broken;
+}
+
+/// Exposure: while the cells of `n` fall in a random order, links with rock on both sides keep their state,
+/// links with rock on one side are skin or pocket (the input's skin: skin), links with none are gone; the
+/// lists of changes are complete, ascending and without repetition; the order within one update does not
+/// matter. O(cells x links) at worst.
+template <exposure_policy E, link_network N>
+[[nodiscard]] std::vector<std::string> exposure(E const& policy, N const& n) {
+    std::vector<std::string> broken;
+    auto const law = [&](bool holds, char const* what) {
+        if (!holds && std::find(broken.begin(), broken.end(), what) == broken.end()) broken.push_back(what);
+    };
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        stream random(seed, stage::user, 0);
+        std::vector<cell_index> left;
+        for (std::size_t c = 0; c < n.cell_count(); ++c) left.push_back(cell_index{c});
+        std::vector<cell_state> cells(n.cell_count(), cell_state::solid);
+        std::vector<link_state> links(n.link_count(), link_state::bonded);
+        for (link_state& l : links) {
+            if (random.chance(0.2)) l = link_state::broken;
+        }
+        auto memory = policy.start(n, cells, links);
+        exposure_change change;
+        while (!left.empty()) {
+            std::vector<cell_index> fallen;
+            std::size_t const many = 1 + random.index_below(std::min<std::size_t>(left.size(), 4));
+            for (std::size_t k = 0; k < many; ++k) {
+                std::size_t const at = random.index_below(left.size());
+                fallen.push_back(left[at]);
+                left[at] = left.back();
+                left.pop_back();
+            }
+            for (cell_index const c : fallen) cells[c.value] = cell_state::air;
+            auto const before = links;
+            auto mirrored = links;
+            auto mirror = memory;
+            exposure_change ignored;
+            policy.update(n, cells, std::span<cell_index const>(fallen), memory, std::span<link_state>(links), change);
+            std::reverse(fallen.begin(), fallen.end());
+            policy.update(n, cells, std::span<cell_index const>(fallen), mirror, std::span<link_state>(mirrored), ignored);
+            law(links == mirrored, "the order within one update does not matter");
+            std::vector<link_index> opened;
+            std::vector<link_index> closed;
+            for (std::size_t i = 0; i < links.size(); ++i) {
+                if (!n.has_link(link_index{i})) continue;
+                auto const ends = n.link_cells(link_index{i});
+                bool const first = cells[ends[0].value] != cell_state::air;
+                bool const second = ends[1].valid() && cells[ends[1].value] != cell_state::air;
+                if (first && second) law(links[i] == before[i], "a link with rock on both sides keeps its state");
+                if (!first && !second) law(links[i] == link_state::gone, "a link without rock is gone");
+                if (first != second) {
+                    law(links[i] == link_state::skin || (ends[1].valid() && links[i] == link_state::pocket),
+                        "a link with rock on one side is skin or pocket, the input's skin is skin");
+                }
+                if (links[i] == link_state::skin && before[i] != link_state::skin) opened.push_back(link_index{i});
+                if (links[i] != link_state::skin && before[i] == link_state::skin) closed.push_back(link_index{i});
+            }
+            law(change.opened == opened && change.closed == closed, "opened and closed list what changed, ascending, once");
+        }
     }
     return broken;
 }
