@@ -28,7 +28,7 @@ std::vector<cell_index> cells_where(shard_complex const& shards, Predicate const
 /// Cells that own artificial skin: the sides and the base of a terrain.
 bool is_artificial(shard_complex const& shards, cell_index c) {
     for (std::uint32_t const f : shards.faces_of(c)) {
-        if (!shards.faces[f].back.valid() && !shards.faces[f].patch.valid()) return true;
+        if (!shards.faces[f].back.valid() && !shards.face_patch(tafoni::face_index{f}).valid()) return true;
     }
     return false;
 }

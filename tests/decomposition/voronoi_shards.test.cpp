@@ -365,8 +365,8 @@ TEST_CASE("patches follow the angle between polygons") {
     auto const c = voronoi_shards(body, sites);
     CHECK(c.patch_count == 7);
     for (std::size_t f = c.interior_face_count; f < c.face_count(); ++f) {
-        bool const base = c.polygon_of[c.faces[f].source] == 0;
-        CHECK(c.faces[f].patch.valid() == !base);
+        bool const base = c.polygon_of[c.face_source(face_index{f})] == 0;
+        CHECK(c.face_patch(face_index{f}).valid() == !base);
     }
 }
 
@@ -374,7 +374,7 @@ TEST_CASE("skin faces lie in the triangle that they name as their source") {
     solid const body = make_solid(tafoni_test::torus(2, 0.6, 24, 12));
     auto const c = voronoi_shards(body, uniform_points(body.bounds, 100));
     for (std::size_t f = c.interior_face_count; f < c.face_count(); ++f) {
-        auto const& t = body.triangles[c.faces[f].source];
+        auto const& t = body.triangles[c.face_source(face_index{f})];
         vec3 const n = normalized(cross(vec3(body.positions[t[1]] - body.positions[t[0]]), vec3(body.positions[t[2]] - body.positions[t[0]])));
         for (vertex_index v : c.face_loop(face_index{f}, 0)) {
             CHECK(std::fabs(dot(n, vec3(c.position(v) - body.positions[t[0]]))) < 1e-12);

@@ -67,7 +67,7 @@ inline std::vector<std::string> broken_laws(tafoni::solid const& body, tafoni::s
     for (std::size_t f = c.interior_face_count; f < c.face_count(); ++f) {
         skin += tafoni::length(sum_face(c, static_cast<std::uint32_t>(f), c.position(c.face_loop(tafoni::face_index{f}, 0)[0])).area);
         if (c.faces[f].back.valid()) report("skin face ", f, " has a back");
-        if (c.faces[f].source >= body.triangles.size()) report("skin face ", f, " has no source");
+        if (c.face_source(tafoni::face_index{f}) >= body.triangles.size()) report("skin face ", f, " has no source");
     }
     if (!(std::fabs(skin - body.area) <= options.tolerance * body.area)) {
         report("law 6: skin of ", skin, ", the solid's surface has ", body.area);

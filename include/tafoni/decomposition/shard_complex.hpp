@@ -19,10 +19,8 @@ struct shard_complex {
 
     /// One face: a flat polygon with holes between two shards, or a fragment of an input triangle.
     struct face_record {
-        cell_index front{};             ///< the normal points out of this shard
-        cell_index back{};              ///< not valid on the skin
-        std::uint32_t source = none;    ///< skin: triangle of the solid that the face is cut from
-        patch_index patch{};            ///< skin: smooth patch; not valid on artificial skin and inside
+        cell_index front{};  ///< the normal points out of this shard
+        cell_index back{};   ///< not valid on the skin
     };
 
     std::vector<vec3> vertices{};
@@ -31,6 +29,8 @@ struct shard_complex {
     std::vector<std::uint32_t> face_begin{0};   ///< face -> first loop; one past the last at the end
     std::vector<face_record> faces{};           ///< interior faces first, then skin
     std::size_t interior_face_count = 0;
+    std::vector<std::uint32_t> skin_sources{};  ///< per skin face: triangle of the solid that it is cut from
+    std::vector<patch_index> skin_patches{};    ///< per skin face: smooth patch; not valid on artificial skin
 
     std::vector<std::uint32_t> cell_faces{};    ///< faces of the cells, concatenated
     std::vector<std::size_t> cell_begin{0};     ///< cell -> first entry of cell_faces
@@ -65,7 +65,13 @@ struct shard_complex {
         std::size_t const l = face_begin[f.value] + loop;
         return {corners.data() + loop_begin[l], loop_begin[l + 1] - loop_begin[l]};
     }
-    [[nodiscard]] patch_index face_patch(face_index f) const noexcept { return faces[f.value].patch; }
+    [[nodiscard]] patch_index face_patch(face_index f) const noexcept {
+        return f.value < interior_face_count ? patch_index{} : skin_patches[f.value - interior_face_count];
+    }
+    /// The triangle of the solid that a skin face is cut from; `none` inside.
+    [[nodiscard]] std::uint32_t face_source(face_index f) const noexcept {
+        return f.value < interior_face_count ? none : skin_sources[f.value - interior_face_count];
+    }
     [[nodiscard]] double model_size() const noexcept { return size; }
 
     [[nodiscard]] std::span<std::uint32_t const> faces_of(cell_index c) const noexcept {

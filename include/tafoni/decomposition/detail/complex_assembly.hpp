@@ -72,11 +72,9 @@ void assemble_complex(polygon_set& interior, shard_split& split, vertex_places c
             if (f < inside && interior.back[f] == i) out.faces[f].back = shard;
         }
     }
-    for (std::size_t p = 0; p < skin; ++p) {
-        auto& face = out.faces[inside + p];
-        face.source = pieces.triangle_of[p];
-        face.patch = patches.of[body.polygon_of[face.source]];
-    }
+    out.skin_sources = pieces.triangle_of;
+    out.skin_patches.resize(skin);
+    for (std::size_t p = 0; p < skin; ++p) out.skin_patches[p] = patches.of[body.polygon_of[pieces.triangle_of[p]]];
 
     std::vector<std::uint32_t> number(places.numbers.end, 0);
     for (std::uint32_t c : interior.corners) number[c] = 1;
