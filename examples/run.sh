@@ -4,8 +4,8 @@
 #   sh examples/run.sh                 the built-in outcrop
 #   sh examples/run.sh FILE            your mesh (.obj .ply .stl) or elevation grid (.asc)
 #   --up x|y|z     which axis of the model points up (default z)
-#   --shards N     about how many shards (default 3000)
-#   --paths N      water paths (default 12 for each shard)
+#   --shards N     about how many shards (default 3000; 10000 for a grid)
+#   --paths N      water paths (default 20 for each shard; 6 for a grid)
 #   --sites SPEC   where shards grow from (default: tilted slabs, shaken)
 #   --small        few shards and small pictures, for a quick look and for CI
 #   --out DIR      where to write (default out)      --build DIR    where to build (default build/examples)
@@ -13,13 +13,14 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
-input=builtin:outcrop:resolution=64
+input=""
 up=z
-shards=3000
+shards=""
 paths=""
 sites=""
 width=760
 height=640
+small=no
 install=yes
 jobs=$(nproc)
 out=out
@@ -30,7 +31,7 @@ while [ $# -gt 0 ]; do
         --shards) shift; shards=$1 ;;
         --paths) shift; paths=$1 ;;
         --sites) shift; sites=$1 ;;
-        --small) shards=400; width=240; height=200; [ "$input" = builtin:outcrop:resolution=64 ] && input=builtin:outcrop:resolution=24 ;;
+        --small) small=yes; width=240; height=200 ;;
         --out) shift; out=$1 ;;
         --build) shift; build=$1 ;;
         --no-install) install=no ;;
@@ -41,7 +42,13 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-[ -n "$paths" ] || paths=$((12 * shards))
+[ -n "$input" ] || input=builtin:outcrop:seed=2,resolution=$([ $small = yes ] && echo 24 || echo 64)
+each=20
+many=3000
+case $input in *.asc | *.ASC) each=6; many=10000 ;; esac
+[ $small = no ] || many=400
+[ -n "$shards" ] || shards=$many
+[ -n "$paths" ] || paths=$((each * shards))
 every=$(((paths + 2) / 3))
 paths=$((3 * every))
 
@@ -64,24 +71,28 @@ case $up in
 esac
 [ -n "$sites" ] || sites=slabs:up=$tilt
 core="--core bottom:share=0.12"
+distance=1.45
 case $input in
-    *.asc | *.ASC) core=""; view="0.35 -1 0.8" ;;
+    *.asc | *.ASC) core=""; view="0.35 -1 0.8"; distance=1.75 ;;
 esac
 
 mkdir -p "$out"
 results=$out/frost
 rm -rf "$results"
 # shellcheck disable=SC2086
-"$weather" frost "$input" -o "$results" --shards "$shards" --sites "$sites" --jitter 0.6 --gravity=$down --rain=$rain \
+"$weather" frost "$input" -o "$results" --shards "$shards" --sites "$sites" --jitter 0.4 --gravity=$down --rain=$rain \
     --spread 40 --paths "$paths" --snapshots "$every" --resistance layers:values=0.3,0.85 --format vtp,obj --threads 0 $core
 
 # One camera for all states, so that what is gone is seen to be gone.
-camera=$(awk -v view="$view" -v aspect="$width/$height" '
+camera=$(awk -v view="$view" -v distance=$distance -v up=$(echo $up | tr xyz 123) '
     $1 == "v" { for (a = 1; a <= 3; ++a) { x = $(a + 1); if (!n || x < lo[a]) lo[a] = x; if (!n || x > hi[a]) hi[a] = x } n = 1 }
     END {
         split(view, d, " ")
         for (a = 1; a <= 3; ++a) { s += (hi[a] - lo[a]) ^ 2; l += d[a] ^ 2 }
-        for (a = 1; a <= 3; ++a) { f[a] = (lo[a] + hi[a]) / 2; p[a] = f[a] + 1.45 * sqrt(s / l) * d[a] }
+        away = distance * sqrt(s)
+        tall = 2.2 * (hi[up] - lo[up]) + 0.3 * sqrt(s)
+        if (tall > away) away = tall
+        for (a = 1; a <= 3; ++a) { f[a] = (lo[a] + hi[a]) / 2; p[a] = f[a] + away * d[a] / sqrt(l) }
         printf "--camera-position=%.9g,%.9g,%.9g --camera-focal-point=%.9g,%.9g,%.9g", p[1], p[2], p[3], f[1], f[2], f[3]
     }' "$results"/snapshots/frost_00000000.obj)
 
@@ -108,7 +119,7 @@ gnuplot << PLOT
 set terminal pngcairo size 900,520 background '#ffffff'
 set output '$out/frost_plot.png'
 set datafile separator ','
-set key top center horizontal
+set key outside top center horizontal
 set xlabel 'water paths'
 set ylabel 'volume that stands (share of the start)'
 set y2label 'broken links'
