@@ -94,6 +94,38 @@ TEST_CASE("a path runs over neighbours only, downhill, and starts on skin that f
     }
 }
 
+TEST_CASE("law 14: entry frequency is area times max(-n . d, 0)") {
+    box_network n(4, 3, 2);
+    std::uint32_t turn = 0;
+    for (auto& l : n.links) l.area = 0.25 + 0.5 * (turn++ % 4);
+    auto const table = fresh_table(n);
+    entry_tree skin(table.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        if (table[link_index{i}].state == link_state::skin) {
+            skin.set(link_index{i}, static_cast<std::int64_t>(table[link_index{i}].area * 4096));
+        }
+    }
+    std::vector<double> expected(table.size(), 0);
+    double total = 0;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        if (table[link_index{i}].state != link_state::skin) continue;
+        expected[i] = n.links[i].area * std::max(-dot(n.links[i].normal, slanting.direction), 0.0);
+        total += expected[i];
+    }
+    int const paths = 60000;
+    std::vector<double> seen(table.size(), 0);
+    path_scratch memory;
+    std::vector<path_visit> visits;
+    for (int path = 0; path < paths; ++path) {
+        visits.clear();
+        auto const t = percolate(table, skin, policies(slanting, facing, gravity, drinking, soaking), numbers(),
+                                 static_cast<std::uint64_t>(path), visits, memory);
+        seen[t.entry.value] += 1;
+    }
+    for (double& v : expected) v *= paths / total;
+    CHECK(tafoni_test::chi_square_passes(seen, expected));
+}
+
 TEST_CASE("law 15: steps from a link follow the flow weights") {
     box_network const n(5, 5, 5);
     auto table = fresh_table(n);
