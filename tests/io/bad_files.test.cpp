@@ -31,6 +31,7 @@ void* counted(std::size_t size) {
     return p;
 }
 void discounted(void* p) {
+    if (p == nullptr) return;
     held -= ::malloc_usable_size(p);
     std::free(p);
 }
@@ -39,6 +40,8 @@ void discounted(void* p) {
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, std::nothrow_t const&) noexcept { return counted(size); }
+void* operator new[](std::size_t size, std::nothrow_t const&) noexcept { return counted(size); }
 void operator delete(void* p) noexcept { discounted(p); }
 void operator delete[](void* p) noexcept { discounted(p); }
 void operator delete(void* p, std::size_t) noexcept { discounted(p); }
