@@ -1,8 +1,9 @@
 #include <tafoni/tafoni.hpp>
 
-int other_unit();
+std::uint64_t blocks_of_the_other_unit();
 
-int other_unit() {
-    tafoni::stream random(1, tafoni::stage::user, 0);
-    return random.uniform01() < 1 ? tafoni::version_major : -1;
+std::uint64_t blocks_of_the_other_unit() {
+    auto const block = tafoni::voxel_cells::from_indices({.size = {4, 4, 4}}, [](auto...) { return true; });
+    tafoni::frost_run run(block);
+    return run.run({.paths = 100}).blocks;
 }
