@@ -2,10 +2,12 @@
 #include <tafoni/geometry/repair_solid.hpp>
 
 #include <tafoni/core/random.hpp>
+#include <tafoni/io/read_obj.hpp>
 
 #include <catch2/catch.hpp>
 
 #include <support/shapes.hpp>
+#include <support/test_data.hpp>
 
 using namespace tafoni;
 using tafoni_test::append;
@@ -239,4 +241,19 @@ TEST_CASE("repair refuses what cannot be mended, before anything else") {
     m.corners[4] = 8;
     CHECK_THROWS_AS(repair_mesh(m, everything), invalid_input);
     CHECK(repair_mesh(indexed_mesh{}, everything).mesh == indexed_mesh{});
+}
+
+TEST_CASE("real meshes with one fault each become solids by the one repair that it takes") {
+    if (tafoni_test::find("meshes/marble_player_9k.obj").empty()) {
+        WARN("skipped: no data");
+        return;
+    }
+    auto const player = read_obj(tafoni_test::find("meshes/marble_player_9k.obj")).mesh;
+    auto const split = repair_solid(player, {.split_nonmanifold = true});
+    CHECK(split.report.split_edges == 1);
+    CHECK(split.report.split_vertices.size() == 2);
+    CHECK(split.body.volume == Approx(tafoni_test::signed_volume(player)).epsilon(1e-10));
+    auto const hand = repair_solid(read_obj(tafoni_test::find("meshes/hand_lowres.obj")).mesh, {.fill_holes = 16});
+    CHECK(hand.report.filled_holes == 1);
+    CHECK(hand.body.polygon_count == 1603);
 }
