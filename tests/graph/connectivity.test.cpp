@@ -304,3 +304,54 @@ TEST_CASE("with early stopping exactly the pieces without core are reported to f
         require_equal(m, c);
     }
 }
+
+TEST_CASE("a batch too long to search is flooded, with the same fragments", "[law12]") {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        stream random(seed, stage::user, 10);
+        // A long ring: every search runs half way round, so a batch is given up soon.
+        std::uint32_t const n = 6000;
+        std::vector<std::array<std::uint32_t, 2>> e;
+        for (std::uint32_t i = 0; i < n; ++i) e.push_back({i, (i + 1) % n});
+        model m(plain_network(n, e, seed));
+        connectivity c(m.net, {.when_both_hold_core = seed % 2 == 0 ? two_cores::search : two_cores::stop});
+        for (int round = 0; round < 3; ++round) {
+            std::vector<link_index> batch;
+            for (int i = 0; i < 400; ++i) {
+                batch.push_back(link_index{static_cast<std::uint32_t>(random.index_below(n))});
+                m.bonded[batch.back().value] = 0;
+            }
+            c.break_links(m.net, batch);
+            require_equal(m, c);
+            std::vector<cell_index> gone;
+            for (int i = 0; i < 100; ++i) {
+                gone.push_back(cell_index{static_cast<std::uint32_t>(random.index_below(n))});
+                m.alive[gone.back().value] = 0;
+            }
+            c.remove_cells(gone);
+            require_equal(m, c);
+        }
+    }
+}
+
+TEST_CASE("what is left of cells and bonds restores connectivity") {
+    stream random(1, stage::user, 11);
+    model m(random_graph(random));
+    connectivity c(m.net, {.when_both_hold_core = two_cores::search});
+    for (std::size_t l = 0; l < m.net.links.size(); l += 3) {
+        m.bonded[l] = 0;
+        c.break_link(m.net, link_index{l});
+    }
+    m.alive[0] = 0;
+    c.remove_cell(cell_index{0U});
+    m.core[1] = 1;
+    std::vector<cell_state> states(m.net.cell_count(), cell_state::solid);
+    states[0] = cell_state::air;
+    states[1] = cell_state::core;
+    connectivity restored(m.net, states, [&](link_index l) { return m.bonded[l.value] != 0; });
+    require_equal(m, restored);
+    connectivity const snapshot = c;
+    c.set_core(cell_index{1U}, true);
+    require_equal(m, c);
+    REQUIRE_FALSE(snapshot.is_core(cell_index{1U}));
+    REQUIRE_THROWS_AS(connectivity(m.net, std::span{states}.first(1), [](link_index) { return true; }), invalid_input);
+}

@@ -36,8 +36,8 @@ struct connectivity_options {
 /// A broken bond starts two searches, one from each end, in turns, until they meet, one of them has
 /// seen its whole piece, or (`two_cores::stop`) both have found a core cell. So a break costs the
 /// smaller piece at most, and a few dozen cells where the ends stay connected. A batch whose searches
-/// visit more cells than there are in the component is labelled by one flood instead. Totals of a
-/// component are kept in fixed point; those of the larger piece follow by subtraction.
+/// have seen more than twice the model's cells is finished by one flood. Totals of a component are kept
+/// in fixed point; those of the larger piece follow by subtraction.
 ///
 /// A copy is a snapshot. The state follows from which bonds and cells are left: the second constructor
 /// restores it. Component numbers are handles, good until the component comes apart or is removed.
@@ -80,10 +80,9 @@ public:
     std::optional<split> break_link(Network const& n, link_index l) {
         auto const ends = n.link_cells(l);
         if (!ends[1].valid() || ends[0] == ends[1] || !bonds_.remove(l.value, ends[0].value, ends[1].value)) return {};
-        if (bonds_.share_neighbor(ends[0].value, ends[1].value)) return {};
-        terminals_.assign({ends[0].value, ends[1].value});
-        check();
-        if (fragments_.size() < 2) return {};
+        begin();
+        look(ends[0].value, ends[1].value);
+        finish();
         std::uint32_t const a = label_[ends[0].value];
         std::uint32_t const b = label_[ends[1].value];
         if (a == b) return {};
@@ -95,29 +94,26 @@ public:
         return s;
     }
 
-    /// Breaks many bonds, then looks once: the fragments of every component that came apart, by group.
-    /// The same fragments as one by one; where something falls in between, only core cells make the
-    /// outcome the same. Good until the next change. O(cells of the touched components) at most.
+    /// Breaks many bonds; the fragments of every component that came apart, by group. The same pieces as
+    /// one by one; where something falls in between, only core cells make the outcome the same.
+    /// Good until the next change. O(sum of the smaller parts), at most O(cells and bonds of the model).
     template <link_network Network>
     std::span<fragment const> break_links(Network const& n, std::span<link_index const> links) {
-        terminals_.clear();
+        begin();
         for (link_index const l : links) {
             auto const ends = n.link_cells(l);
             if (!ends[1].valid() || ends[0] == ends[1]) continue;
-            if (!bonds_.remove(l.value, ends[0].value, ends[1].value)) continue;
-            terminals_.push_back(ends[0].value);
-            terminals_.push_back(ends[1].value);
+            if (bonds_.remove(l.value, ends[0].value, ends[1].value)) look(ends[0].value, ends[1].value);
         }
-        check();
+        finish();
         return fragments_;
     }
 
-    /// Takes cells out with all their bonds, then looks once; fragments as by `break_links`.
+    /// Takes cells out with all their bonds; fragments of what is left, as by `break_links`.
     std::span<fragment const> remove_cells(std::span<cell_index const> cells) {
-        terminals_.clear();
+        begin();
         for (cell_index const c : cells) take_out(c.value);
-        std::erase_if(terminals_, [&](std::uint32_t c) { return (flags_[c] & removed) != 0; });
-        check();
+        finish();
         return fragments_;
     }
     std::span<fragment const> remove_cell(cell_index c) { return remove_cells({&c, 1}); }
@@ -167,7 +163,8 @@ private:
         std::uint32_t cells = 0;
         std::uint32_t core_cells = 0;
         std::uint32_t seed = nothing;
-        bool blurred = false;  ///< may be several pieces, each with core cells
+        std::uint32_t origin = nothing;  ///< what it was part of when the change began
+        bool blurred = false;            ///< may be several pieces, each with core cells
     };
     using outcome = detail::two_sided_search::outcome;
 
@@ -187,159 +184,141 @@ private:
         }
     }
 
-    std::uint32_t new_component() {
-        if (!free_.empty()) {
-            std::uint32_t const k = free_.back();
-            free_.pop_back();
-            return k;
-        }
-        components_.emplace_back();
-        return static_cast<std::uint32_t>(components_.size()) - 1;
+    void begin() {
+        fragments_.clear();
+        made_.clear();
+        loose_.clear();
+        visited_ = 0;
+        // Breaks one by one look near the broken bond. Where that fails, one flood is cheaper.
+        flood_instead_ = false;
     }
 
-    /// Gives the piece that a side has seen whole a component of its own, out of component k.
+    /// After the bond between a and b is gone: gives what came off a component of its own.
+    void look(std::uint32_t a, std::uint32_t b) {
+        if (flood_instead_) {
+            loose_.push_back(a);
+            loose_.push_back(b);
+            return;
+        }
+        if (bonds_.share_neighbor(a, b)) return;
+        std::uint32_t const k = label_[a];
+        outcome const o = search_.run(bonds_, a, b, options_.when_both_hold_core == two_cores::stop, wanted());
+        visited_ += search_.visited();
+        flood_instead_ = visited_ > 4096 + 2 * cell_count();
+        if (o == outcome::met) return;
+        if (o == outcome::both_found) {
+            components_[k].blurred = true;
+            return;
+        }
+        std::uint32_t const ended = o == outcome::first_ended ? 0 : 1;
+        bool const kept = !components_[k].blurred || search_.reaches(bonds_, 1 - ended, wanted());
+        cut_off(k, ended);
+        components_[k].seed = ended == 0 ? b : a;
+        if (!kept) cut_off(k, 1 - ended);
+    }
+
+    /// Gives the piece that a side of the search has seen whole a component of its own, out of component k.
     void cut_off(std::uint32_t k, std::uint32_t side) {
-        std::uint32_t const fresh = new_component();
-        record piece{.seed = search_.cells(side).front()};
-        std::uint32_t lowest = nothing;
+        if (free_.empty()) {
+            free_.push_back(static_cast<std::uint32_t>(components_.size()));
+            components_.emplace_back();
+        }
+        std::uint32_t const fresh = free_.back();
+        free_.pop_back();
+        record& rest = components_[k];
+        if (rest.origin == nothing) {
+            rest.origin = k;
+            made_.push_back(k);
+        }
+        record piece{.seed = search_.cells(side).front(), .origin = rest.origin};
         for (std::uint32_t const c : search_.cells(side)) {
             label_[c] = fresh;
             piece.volume += volume_[c];
             ++piece.cells;
             piece.core_cells += holds_core(c) ? 1U : 0U;
-            lowest = std::min(lowest, c);
         }
-        record& rest = components_[k];
         rest.volume -= piece.volume;
         rest.cells -= piece.cells;
         rest.core_cells -= piece.core_cells;
         components_[fresh] = piece;
-        fragments_.push_back({{piece.volume, piece.core_cells, cell_index{lowest}}, fresh, group_});
+        made_.push_back(fresh);
     }
 
     void take_out(std::uint32_t c) {
         if ((flags_[c] & removed) != 0) return;
+        while (!bonds_.of(c).empty()) {
+            auto const b = bonds_.of(c).back();
+            bonds_.remove(b.link, c, b.other);
+            look(c, b.other);
+        }
         flags_[c] |= removed;
-        for (auto const& b : bonds_.of(c)) {
-            bonds_.remove_end(b.link, b.other);
-            terminals_.push_back(b.other);
-        }
-        bonds_.clear(c);
-        record& k = components_[label_[c]];
-        k.volume -= volume_[c];
-        --k.cells;
-        k.core_cells -= holds_core(c) ? 1U : 0U;
-        if (k.cells == 0) {
-            free_.push_back(label_[c]);
-            k = {};
+        std::uint32_t const k = label_[c];
+        components_[k].volume -= volume_[c];
+        --components_[k].cells;
+        components_[k].core_cells -= holds_core(c) ? 1U : 0U;
+        if (components_[k].origin == nothing && components_[k].cells == 0) {
+            components_[k].origin = k;
+            made_.push_back(k);
         }
     }
 
-    /// Sorts out the components of `terminals_`: cells that lost a bond. Every piece that came off holds one.
-    void check() {
-        fragments_.clear();
-        group_ = 0;
-        auto const before = [&](std::uint32_t a, std::uint32_t b) {
-            return std::pair{label_[a], a} < std::pair{label_[b], b};
-        };
-        if (terminals_.size() > 2) {
-            std::sort(terminals_.begin(), terminals_.end(), before);
-            terminals_.erase(std::unique(terminals_.begin(), terminals_.end()), terminals_.end());
+    /// Floods what was put off, lists the fragments, and frees the components that have no cells left.
+    void finish() {
+        for (std::uint32_t const c : loose_) {
+            if ((flags_[c] & removed) == 0) put_off_.push_back({label_[c], c});
         }
-        for (std::size_t begin = 0; begin < terminals_.size();) {
-            std::uint32_t const k = label_[terminals_[begin]];
-            std::size_t end = begin + 1;
-            while (end < terminals_.size() && label_[terminals_[end]] == k) ++end;
-            check_component(k, {terminals_.data() + begin, end - begin});
-            begin = end;
-        }
-    }
-
-    void check_component(std::uint32_t k, std::span<std::uint32_t const> terminals) {
-        std::size_t const first_fragment = fragments_.size();
-        std::size_t budget = 2 * std::size_t{components_[k].cells};
-        std::uint32_t rest = nothing;  // a terminal in what keeps the name k
-        bool core_known = false;       // that its piece holds a core cell
-        std::size_t i = 0;
-        for (; i < terminals.size() && budget > 0; ++i) {
-            std::uint32_t const t = terminals[i];
-            if (label_[t] != k) continue;
-            if (rest == nothing) {
-                rest = t;
-                core_known = false;
-                continue;
-            }
-            if (bonds_.share_neighbor(rest, t)) continue;
-            bool const may_stop = options_.when_both_hold_core == two_cores::stop;
-            outcome const o = search_.run(bonds_, rest, t, may_stop, wanted());
-            budget -= std::min(budget, search_.visited());
-            if (o == outcome::met) continue;
-            if (o == outcome::both_found) {
-                components_[k].blurred = true;
-                core_known = true;
-                continue;
-            }
-            std::uint32_t const ended = o == outcome::first_ended ? 0 : 1;
-            std::uint32_t const other = 1 - ended;
-            bool const alive = !components_[k].blurred || search_.reaches(bonds_, other, wanted());
-            cut_off(k, ended);
-            core_known = alive && components_[k].blurred;
-            if (ended == 0) rest = t;
-            if (!alive) {
-                cut_off(k, other);
-                rest = nothing;
-            }
-        }
-        if (i < terminals.size()) {
-            for (std::uint32_t const t : terminals) cut_off_piece_of(t, k);
-            rest = nothing;
-        } else if (rest != nothing && components_[k].blurred && !core_known &&
-                   !search_.reaches_from(bonds_, rest, wanted())) {
+        for (auto const& [k, c] : put_off_) {
+            if (label_[c] != k) continue;
+            search_.flood(bonds_, c);
             cut_off(k, 0);
-            rest = nothing;
         }
-        finish_group(k, rest, first_fragment);
-    }
-
-    void cut_off_piece_of(std::uint32_t c, std::uint32_t k) {
-        if (label_[c] != k) return;
-        search_.flood(bonds_, c);
-        cut_off(k, 0);
-    }
-
-    /// Books what keeps the name k, or forgets the group if nothing came apart.
-    void finish_group(std::uint32_t k, std::uint32_t rest, std::size_t first_fragment) {
-        record& kept = components_[k];
-        if (kept.cells == 0) {
-            kept = {};
+        put_off_.clear();
+        if (made_.empty()) return;
+        std::stable_sort(made_.begin(), made_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return components_[a].origin < components_[b].origin;
+        });
+        std::uint32_t group = 0;
+        for (std::size_t i = 0; i < made_.size();) {
+            std::uint32_t const origin = components_[made_[i]].origin;
+            std::size_t const first = fragments_.size();
+            for (; i < made_.size() && components_[made_[i]].origin == origin; ++i) {
+                record const& k = components_[made_[i]];
+                if (k.cells > 0) fragments_.push_back({{k.volume, k.core_cells, cell_index{}}, made_[i], group});
+            }
+            if (fragments_.size() < first + 2) {
+                fragments_.resize(first);
+            } else {
+                break_ties(std::span{fragments_}.subspan(first));
+                ++group;
+            }
+        }
+        for (std::uint32_t const k : made_) {
+            components_[k].origin = nothing;
+            if (components_[k].cells > 0) continue;
+            components_[k] = {};
             free_.push_back(k);
-        } else {
-            kept.seed = rest;
-            if (fragments_.size() > first_fragment) fragments_.push_back({as_part(kept), k, group_});
         }
-        if (fragments_.size() < first_fragment + 2) {
-            fragments_.resize(first_fragment);
-            return;
+    }
+
+    /// The lowest cell is looked up only where volumes tie.
+    void break_ties(std::span<fragment> group) {
+        std::vector<std::int64_t> volumes;
+        for (fragment const& f : group) volumes.push_back(f.totals.volume);
+        std::sort(volumes.begin(), volumes.end());
+        for (fragment& f : group) {
+            auto const [lo, hi] = std::equal_range(volumes.begin(), volumes.end(), f.totals.volume);
+            if (hi - lo < 2) continue;
+            gather(f.component);
+            f.totals.lowest_cell = cell_index{*std::min_element(search_.cells(0).begin(), search_.cells(0).end())};
         }
-        ++group_;
-        if (fragments_.back().component != k) return;
-        // The lowest cell of the larger piece is looked up only where a tie asks for it.
-        bool tie = false;
-        for (std::size_t f = first_fragment; f + 1 < fragments_.size(); ++f) {
-            tie = tie || fragments_[f].totals.volume == fragments_.back().totals.volume;
-        }
-        if (!tie) return;
-        gather(k);
-        fragments_.back().totals.lowest_cell = cell_index{*std::min_element(search_.cells(0).begin(), search_.cells(0).end())};
     }
 
     /// Makes every piece of a component one of its own.
     void separate(std::uint32_t k) {
         gather(k);
-        terminals_ = search_.cells(0);
-        for (std::uint32_t const c : terminals_) cut_off_piece_of(c, k);
-        components_[k] = {};
-        free_.push_back(k);
+        begin();
+        loose_ = search_.cells(0);
+        finish();
         fragments_.clear();
     }
 
@@ -351,9 +330,12 @@ private:
     std::vector<std::uint32_t> label_{};   ///< per cell: its component
     std::vector<record> components_{};
     std::vector<std::uint32_t> free_{};
-    std::uint32_t group_ = 0;
     detail::two_sided_search search_{};
-    std::vector<std::uint32_t> terminals_{};
+    std::size_t visited_ = 0;             ///< cells that the searches of this change have seen
+    bool flood_instead_ = false;
+    std::vector<std::uint32_t> made_{};   ///< components of this change: those that came apart and their pieces
+    std::vector<std::uint32_t> loose_{};  ///< cells that lost a bond after searching was given up
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> put_off_{};
     std::vector<fragment> fragments_{};
     std::vector<cell_index> cells_{};
 };
