@@ -7,7 +7,7 @@
 #   --shards N     about how many shards (default 3000; 10000 for a grid)
 #   --paths N      water paths (default 20 for each shard; 6 for a grid)
 #   --sites SPEC   where shards grow from (default: tilted slabs, shaken)
-#   --small        few shards and small pictures, for a quick look and for CI
+#   --small        few shards and small pictures, for a quick look; so does TAFONI_SMALL=1
 #   --out DIR      where to write (default out)      --build DIR    where to build (default build/examples)
 #   --no-install   never call apt-get                --jobs N       parallel jobs (default: all cores)
 set -eu
@@ -21,6 +21,7 @@ sites=""
 width=760
 height=640
 small=no
+[ -z "${TAFONI_SMALL:-}" ] || { small=yes; width=240; height=200; }
 install=yes
 jobs=$(nproc)
 out=out

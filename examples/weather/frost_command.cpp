@@ -8,6 +8,22 @@ namespace weather {
 
 std::string version_text() { return tafoni::version_string; }
 
+namespace {
+
+/// Like CLI::Range, but not a number is out of range too.
+CLI::Validator between(double lo, double hi) {
+    std::string const range = "[" + CLI::detail::to_string(lo) + " - " + CLI::detail::to_string(hi) + "]";
+    return CLI::Validator(
+        [lo, hi, range](std::string& text) {
+            double v = 0;
+            bool const good = CLI::detail::lexical_cast(text, v) && v >= lo && v <= hi;
+            return good ? std::string() : text + " is not in " + range;
+        },
+        range);
+}
+
+}  // namespace
+
 CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     CLI::App* const c = app.add_subcommand("frost", "Freeze and thaw: water enters cracks, breaks bonds, blocks fall");
     c->footer(
@@ -25,15 +41,15 @@ CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     c->add_option("-o,--output", a.output, "folder for the results")->required();
     c->add_option("--shards", a.shards, "about how many shards")->check(CLI::Range(std::size_t{1}, std::size_t{100000000}))->capture_default_str();
     c->add_option("--sites", a.sites, "SPEC or file: where shards grow from")->capture_default_str();
-    c->add_option("--jitter", a.jitter, "of grid, hex and slabs, share of the spacing")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-    c->add_option("--patch-angle", a.patch_angle, "degrees within which skin is one link")->check(CLI::Range(0.0, 180.0))->capture_default_str();
+    c->add_option("--jitter", a.jitter, "of grid, hex and slabs, share of the spacing")->check(between(0.0, 1.0))->capture_default_str();
+    c->add_option("--patch-angle", a.patch_angle, "degrees within which skin is one link")->check(between(0.0, 180.0))->capture_default_str();
     c->add_option("--paths", a.paths, "water paths in all, those before --resume included")->capture_default_str();
     c->add_option("--batch", a.batch, "paths that walk one frozen state")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
     c->add_option("--seed", a.seed, "of everything that is drawn")->capture_default_str();
     c->add_option("--rain", a.rain, "direction of travel x,y,z; default: the preset's, along gravity for paper");
-    c->add_option("--spread", a.spread, "half-angle of the rain around its direction, degrees")->check(CLI::Range(0.0, 180.0))->capture_default_str();
-    c->add_option("--water", a.water, "water of one path")->check(CLI::Range(0.0, 1024.0))->capture_default_str();
-    c->add_option("--absorb", a.absorb, "factor of all absorption coefficients")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+    c->add_option("--spread", a.spread, "half-angle of the rain around its direction, degrees")->check(between(0.0, 180.0))->capture_default_str();
+    c->add_option("--water", a.water, "water of one path")->check(between(0.0, 1024.0))->capture_default_str();
+    c->add_option("--absorb", a.absorb, "factor of all absorption coefficients")->check(between(0.0, 1e6))->capture_default_str();
     c->add_option("--gravity", a.gravity, "direction x,y,z")->capture_default_str();
     c->add_option("--resistance", a.resistance, "SPEC: how much the rock resists, 0 to 1")->capture_default_str();
     c->add_option("--core", a.core, "SPEC, repeatable: cells that never fall; default: artificial for .asc, else none");
