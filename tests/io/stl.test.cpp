@@ -56,6 +56,16 @@ TEST_CASE("an ASCII STL is read, equal corners are welded and its solids are gro
     CHECK(file.attributes.groups[1].first_face == 2);
 }
 
+TEST_CASE("the eight signs of the origin are one vertex") {
+    std::string bytes = "solid\n";
+    for (int signs = 0; signs < 8; ++signs) {
+        bytes += "facet normal 0 0 1 outer loop vertex";
+        for (int axis = 0; axis < 3; ++axis) bytes += (signs >> axis & 1) != 0 ? " -0" : " 0";
+        bytes += " vertex 1 0 0 vertex 0 1 0 endloop endfacet\n";
+    }
+    CHECK(stl(bytes + "endsolid\n").mesh.vertex_count() == 3);
+}
+
 TEST_CASE("a cube written as binary STL comes back with eight vertices and volume one") {
     std::string const bytes = encode_stl(cube());
     CHECK(bytes.size() == 84 + 12 * 50);

@@ -46,6 +46,9 @@ private:
             h *= 0x9e3779b97f4a7c15U;
             h ^= h >> 32;
         }
+        // Once more, or the sign of z would not reach the low bits, and mirrored points would share slots.
+        h *= 0x9e3779b97f4a7c15U;
+        h ^= h >> 32;
         std::size_t const mask = slots_.size() - 1;
         std::size_t slot = static_cast<std::size_t>(h) & mask;
         while (slots_[slot] != empty && !equal(points_[slots_[slot]], p)) slot = (slot + 1) & mask;
