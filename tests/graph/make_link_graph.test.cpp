@@ -33,7 +33,12 @@ struct sketch {
             c.loop_begin.push_back(c.corners.size());
         }
         c.face_begin.push_back(static_cast<std::uint32_t>(c.loop_begin.size() - 1));
-        c.faces.push_back({cell_index{front}, cell_index{back}, 0, patch_index{patch}});
+        c.faces.push_back({cell_index{front}, cell_index{back}});
+        if (cell_index{back}.valid()) {
+            ++c.interior_face_count;  // interior faces are sketched first
+        } else {
+            c.skin_patches.push_back(patch_index{patch});
+        }
     }
 };
 constexpr std::uint32_t none = cell_index::none;
