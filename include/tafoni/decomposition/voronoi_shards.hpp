@@ -136,7 +136,6 @@ struct voronoi_shards_fn {
         assemble_complex(interior, split, places, body, smooth_patches(body, options.patch_angle),
                          static_cast<double>(shard_lattice::margin), threads, out);
         for (site_index& s : out.site_of) s = site_index{lattice.given[s.value]};
-        index_cell_faces(out);
         std::vector<std::uint32_t> same_as;
         if (out.merged_sites != 0) {
             same_as.resize(sites.size());

@@ -21,6 +21,23 @@ template <class Result, class Executor, class Work>
     return results;
 }
 
+/// Copies the vectors that `part` picks out of the results into `to`, one behind the other, each element
+/// changed by shift(element, block); frees them. `to` is reserved once, so memory peaks at both copies.
+template <class T, class Result, class Executor, class Part, class Shift>
+void gather_blocks(std::vector<Result>& results, Part const& part, std::vector<T>& to, Executor const& threads,
+                   Shift const& shift) {
+    std::vector<std::size_t> begin(results.size() + 1, to.size());
+    for (std::size_t b = 0; b < results.size(); ++b) begin[b + 1] = begin[b] + part(results[b]).size();
+    to.resize(begin.back());
+    threads.for_blocks(results.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) {
+            std::vector<T>& from = part(results[b]);
+            for (std::size_t k = 0; k < from.size(); ++k) to[begin[b] + k] = shift(from[k], b);
+            std::vector<T>().swap(from);
+        }
+    });
+}
+
 /// Appends `from` to `to` and frees it.
 template <class T>
 void append_and_free(std::vector<T>& to, std::vector<T>& from) {

@@ -7,8 +7,11 @@
 #include <tafoni/decomposition/detail/smooth_patches.hpp>
 #include <tafoni/decomposition/shard_complex.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
@@ -64,21 +67,50 @@ void assemble_complex(polygon_set& interior, shard_split& split, vertex_places c
     std::size_t const skin = pieces.cell.size();
     out.interior_face_count = inside;
     out.faces.resize(inside + skin);
-    for (std::size_t i = 0; i + 1 < split.face_begin.size(); ++i) {
-        for (std::size_t e = split.face_begin[i]; e < split.face_begin[i + 1]; ++e) {
-            std::uint32_t const f = split.faces[e];
-            cell_index const shard{split.shard_begin[i] + split.label[e]};
-            if (f >= inside || interior.front[f] == i) out.faces[f].front = shard;
-            if (f < inside && interior.back[f] == i) out.faces[f].back = shard;
+    out.cell_begin.assign(split.volumes.size() + 1, 0);
+    threads.for_blocks(split.face_begin.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> sorted;
+        std::vector<std::size_t> next;
+        for (std::size_t i = begin; i < end; ++i) {
+            std::size_t const first = split.face_begin[i];
+            std::size_t const last = split.face_begin[i + 1];
+            std::uint32_t const shard = split.shard_begin[i];
+            std::uint32_t const count = split.shard_begin[i + 1] - shard;
+            for (std::size_t e = first; e < last; ++e) {
+                std::uint32_t const f = split.faces[e];
+                cell_index const owner{shard + split.label[e]};
+                if (f >= inside || interior.front[f] == i) out.faces[f].front = owner;
+                if (f < inside && interior.back[f] == i) out.faces[f].back = owner;
+            }
+            if (count == 1) out.cell_begin[shard + 1] = last;
+            if (count < 2) continue;
+            // The list around the cell becomes those of its shards, one after the other.
+            next.assign(count + 1, first);
+            for (std::size_t e = first; e < last; ++e) ++next[split.label[e] + 1];
+            for (std::uint32_t k = 0; k < count; ++k) {
+                next[k + 1] += next[k] - first;
+                out.cell_begin[shard + k + 1] = next[k + 1];
+            }
+            sorted.resize(last - first);
+            for (std::size_t e = first; e < last; ++e) sorted[next[split.label[e]]++ - first] = split.faces[e];
+            std::copy(sorted.begin(), sorted.end(), split.faces.begin() + static_cast<std::ptrdiff_t>(first));
         }
-    }
+    });
+    out.cell_faces = std::move(split.faces);
     out.skin_sources = pieces.triangle_of;
     out.skin_patches.resize(skin);
     for (std::size_t p = 0; p < skin; ++p) out.skin_patches[p] = patches.of[body.polygon_of[pieces.triangle_of[p]]];
 
     std::vector<std::uint32_t> number(places.numbers.end, 0);
-    for (std::uint32_t c : interior.corners) number[c] = 1;
-    for (std::uint32_t c : pieces.corners) number[c] = 1;
+    auto const mark = [&](std::vector<std::uint32_t> const& corners) {
+        threads.for_blocks(corners.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                std::atomic_ref<std::uint32_t>(number[corners[k]]).store(1, std::memory_order_relaxed);
+            }
+        });
+    };
+    mark(interior.corners);
+    mark(pieces.corners);
     std::uint32_t used = 0;
     for (std::uint32_t& n : number) {
         if (n != 0) n = used++;
@@ -96,11 +128,12 @@ void assemble_complex(polygon_set& interior, shard_split& split, vertex_places c
     out.corners.resize(interior.corners.size() + pieces.corners.size());
     out.loop_begin = std::move(interior.loop_begin);
     out.face_begin = std::move(interior.face_begin);
-    for (std::size_t k = 0; k < interior.corners.size(); ++k) out.corners[k] = vertex_index{number[interior.corners[k]]};
     std::size_t const first = interior.corners.size();
-    for (std::size_t k = 0; k < pieces.corners.size(); ++k) {
-        out.corners[first + k] = vertex_index{number[pieces.corners[k]]};
-    }
+    threads.for_blocks(out.corners.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            out.corners[k] = vertex_index{number[k < first ? interior.corners[k] : pieces.corners[k - first]]};
+        }
+    });
     out.loop_begin.reserve(out.loop_begin.size() + skin);
     out.face_begin.reserve(out.face_begin.size() + skin);
     for (std::size_t p = 0; p < skin; ++p) {

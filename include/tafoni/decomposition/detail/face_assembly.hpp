@@ -225,30 +225,27 @@ template <class Executor>
         }
     });
     polygon_set all;
-    std::size_t faces = 0;
+    std::vector<std::uint32_t> first_loop(blocks.size(), 0);
+    std::vector<std::size_t> first_corner(blocks.size(), 0);
     std::size_t loops = 0;
     std::size_t corners = 0;
-    for (polygon_set const& b : blocks) {
-        faces += b.front.size();
-        loops += b.loop_begin.size() - 1;
-        corners += b.corners.size();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        first_loop[b] = static_cast<std::uint32_t>(loops);
+        first_corner[b] = corners;
+        loops += blocks[b].loop_begin.size() - 1;
+        corners += blocks[b].corners.size();
+        blocks[b].face_begin.erase(blocks[b].face_begin.begin());
+        blocks[b].loop_begin.erase(blocks[b].loop_begin.begin());
     }
     require_indexable("voronoi_shards", loops);
-    all.front.reserve(faces);
-    all.back.reserve(faces);
-    all.face_begin.reserve(faces + 1);
-    all.loop_begin.reserve(loops + 1);
-    all.corners.reserve(corners);
-    for (polygon_set& b : blocks) {
-        std::uint32_t const first_loop = static_cast<std::uint32_t>(all.loop_begin.size() - 1);
-        std::size_t const first_corner = all.corners.size();
-        for (std::size_t f = 1; f < b.face_begin.size(); ++f) all.face_begin.push_back(first_loop + b.face_begin[f]);
-        for (std::size_t l = 1; l < b.loop_begin.size(); ++l) all.loop_begin.push_back(first_corner + b.loop_begin[l]);
-        append_and_free(all.front, b.front);
-        append_and_free(all.back, b.back);
-        append_and_free(all.corners, b.corners);
-        b = polygon_set{};
-    }
+    auto const as_is = [](std::uint32_t x, std::size_t) { return x; };
+    gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.front; }, all.front, threads, as_is);
+    gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.back; }, all.back, threads, as_is);
+    gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.corners; }, all.corners, threads, as_is);
+    gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.face_begin; }, all.face_begin, threads,
+                  [&](std::uint32_t l, std::size_t b) { return l + first_loop[b]; });
+    gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.loop_begin; }, all.loop_begin, threads,
+                  [&](std::size_t c, std::size_t b) { return c + first_corner[b]; });
     return all;
 }
 

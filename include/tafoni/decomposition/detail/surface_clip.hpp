@@ -232,7 +232,8 @@ private:
 template <class Executor>
 [[nodiscard]] surface_pieces clip_surface(surface_signs const& signs, solid const& body, surface_walk const& walk,
                                           vertex_numbers& numbers, Executor const& threads) {
-    constexpr std::size_t grain = 1024;
+    // Few triangles are large ones: each may cross many cells.
+    std::size_t const grain = std::clamp<std::size_t>(body.triangles.size() / 256, 1, 1024);
     auto blocks = collect_blocks<surface_pieces>(
         body.triangles.size(), grain, threads, [&](std::size_t begin, std::size_t end, surface_pieces& out) {
             triangle_clipper clip(signs, body, walk, numbers);
