@@ -82,6 +82,7 @@ public:
         if (!ends[1].valid() || ends[0] == ends[1] || !bonds_.remove(l.value, ends[0].value, ends[1].value)) return {};
         begin();
         look(ends[0].value, ends[1].value);
+        if (made_.empty()) return {};
         finish();
         std::uint32_t const a = label_[ends[0].value];
         std::uint32_t const b = label_[ends[1].value];
