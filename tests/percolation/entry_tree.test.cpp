@@ -83,6 +83,27 @@ TEST_CASE("draws depend on the weights, not on the order in which they were set"
     }
 }
 
+TEST_CASE("the exact draw follows changes of weights and of the direction") {
+    entry_tree tree(50);
+    for (std::uint32_t i = 0; i < 50; ++i) tree.set(link_index{i}, 10);
+    entry_tree::scratch memory;
+    auto const only = [](std::uint32_t a, std::uint32_t b) {
+        return [a, b](link_index l) { return l.value == a || l.value == b ? 1e-9 : 0.0; };
+    };
+    double const other_key[3] = {1, 0, 0};
+    for (std::uint64_t k = 0; k < 50; ++k) {
+        stream random(6, stage::entry, k);
+        link_index const first = tree.draw(random, no_key, only(3, 4), memory);
+        CHECK((first.value == 3 || first.value == 4));
+        CHECK(tree.draw(random, other_key, only(7, 7), memory).value == 7);
+        tree.set(link_index{3u}, 0);
+        CHECK(tree.draw(random, other_key, only(3, 4), memory).value == 4);
+        tree.set(link_index{3u}, 10);
+        tree.invalidate();
+        CHECK(tree.draw(random, other_key, only(8, 8), memory).value == 8);
+    }
+}
+
 TEST_CASE("links are visited in ascending order, those without weight are not") {
     entry_tree tree(700);
     std::vector<std::uint32_t> const expected{0, 8, 63, 64, 511, 512, 699};

@@ -200,6 +200,25 @@ TEST_CASE("law 17: an extra draw in the rain shifts no other policy's draws") {
     }
 }
 
+TEST_CASE("law 17: draws of the soaking shift no step") {
+    box_network const n(5, 5, 5);
+    auto const table = fresh_table(n);
+    auto const skin = fresh_skin(table);
+    struct {
+        double soak_chance(link_view const&, water const&) const { return 1e-300; }  // drawn, never met
+    } const hardly;
+    depletion_soaking const never{.threshold = 0};
+    path_scratch memory;
+    for (std::uint64_t path = 0; path < 300; ++path) {
+        std::vector<path_visit> a;
+        std::vector<path_visit> b;
+        (void)percolate(table, skin, policies(slanting, facing, gravity, drinking, never), numbers(), path, a, memory);
+        (void)percolate(table, skin, policies(slanting, facing, gravity, drinking, hardly), numbers(), path, b, memory);
+        REQUIRE(a.size() == b.size());
+        for (std::size_t k = 0; k < a.size(); ++k) REQUIRE(a[k].link == b[k].link);
+    }
+}
+
 TEST_CASE("law 17: a mirrored model and rain give mirrored statistics") {
     box_network const n(6, 6, 6);
     auto const table = fresh_table(n);

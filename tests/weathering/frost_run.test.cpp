@@ -193,6 +193,12 @@ TEST_CASE("link states are what cells, lives and a flood from outside say") {
             }
             REQUIRE(run.state(l) == expected);
         }
+        for (std::uint64_t path = 0; path < 20; ++path) {
+            std::vector<path_visit> visits;
+            auto const t = run.trace(run.paths() + path, visits);
+            if (t.entry.valid()) REQUIRE(run.state(t.entry) == link_state::skin);
+            for (path_visit const& v : visits) REQUIRE(run.state(v.link) != link_state::gone);
+        }
     }
     CHECK(run.report().cells_detached > 20);
 }
