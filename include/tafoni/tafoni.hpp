@@ -54,6 +54,7 @@
 #include <tafoni/geometry/height_grid.hpp>
 #include <tafoni/geometry/indexed_mesh.hpp>
 #include <tafoni/geometry/inside_columns.hpp>
+#include <tafoni/geometry/inspect_mesh.hpp>
 #include <tafoni/geometry/lattice.hpp>
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/geometry/outcrop.hpp>
@@ -78,6 +79,7 @@
 #include <tafoni/graph/split.hpp>
 #include <tafoni/graph/surface_walk.hpp>
 #include <tafoni/io/esri_ascii.hpp>
+#include <tafoni/io/graph_vtp.hpp>
 #include <tafoni/io/mesh_file.hpp>
 #include <tafoni/io/obj.hpp>
 #include <tafoni/io/ply.hpp>
