@@ -243,24 +243,17 @@ using limb = wide_int<1>;
     return -s * x.cd.sign();
 }
 
-/// Where is the vertex of i's cell on the planes a, b, c?  1: beyond plane d, -1: on i's side.
-/// Expects that the vertex exists; d may be a wall as well.
-[[nodiscard]] inline int side4(site const& i, plane const& a, plane const& b, plane const& c, plane const& d) noexcept {
-    auto const rows = [&]<class Num>(Num) {
-        return detail::expand(detail::plane_row<Num>(i.at, a), detail::plane_row<Num>(i.at, b),
-                              detail::plane_row<Num>(i.at, c), detail::plane_row<Num>(i.at, d));
-    };
-    {
-        auto const x = rows(approx{});
-        int const s = x.det.sign() * x.cd.sign();
-        if (s != 0) return -s;
-    }
-    auto const x = rows(detail::limb{});
+/// As side4 below, without the filter: for callers that know that doubles do not decide.
+[[nodiscard]] inline int side4_unfiltered(site const& i, plane const& a, plane const& b, plane const& c,
+                                          plane const& d) noexcept {
+    using detail::limb;
+    auto const x = detail::expand(detail::plane_row<limb>(i.at, a), detail::plane_row<limb>(i.at, b),
+                                  detail::plane_row<limb>(i.at, c), detail::plane_row<limb>(i.at, d));
     int s = x.det.sign();
     if (s == 0) {
         std::array<detail::vote, 5> votes{};
         std::size_t count = 1;
-        auto sum = decltype(x.ca)(detail::limb(std::int64_t{0}));
+        auto sum = decltype(x.ca)(limb(std::int64_t{0}));
         auto const add = [&](plane const& p, auto const& cofactor) {
             if (p.axis >= 0) return;
             sum = sum + cofactor;
@@ -274,6 +267,15 @@ using limb = wide_int<1>;
         s = detail::decide(votes, count);
     }
     return -s * x.cd.sign();
+}
+
+/// Where is the vertex of i's cell on the planes a, b, c?  1: beyond plane d, -1: on i's side.
+/// Expects that the vertex exists; d may be a wall as well.
+[[nodiscard]] inline int side4(site const& i, plane const& a, plane const& b, plane const& c, plane const& d) noexcept {
+    auto const x = detail::expand(detail::plane_row<approx>(i.at, a), detail::plane_row<approx>(i.at, b),
+                                  detail::plane_row<approx>(i.at, c), detail::plane_row<approx>(i.at, d));
+    int const s = x.det.sign() * x.cd.sign();
+    return s != 0 ? -s : side4_unfiltered(i, a, b, c, d);
 }
 
 /// The sign of  N . (n_k x n_l): does the line of the bisectors (i, k) and (i, l), run along n_k x n_l,

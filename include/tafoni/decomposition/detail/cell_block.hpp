@@ -126,7 +126,7 @@ private:
         std::size_t count = 0;
         for (std::size_t k = 0; k < gathered_; ++k) {
             queue_[count] = static_cast<std::uint32_t>(k);
-            count += static_cast<std::size_t>((distance2_[k] > lo) & (distance2_[k] <= hi));
+            count += static_cast<std::size_t>(distance2_[k] > lo) & static_cast<std::size_t>(distance2_[k] <= hi);
         }
         if (count == 0) return true;
         constexpr std::size_t shells = 64;
@@ -184,9 +184,22 @@ private:
         return 4 * cell.radius2() <= reach2_ || search(cell, home, i);
     }
 
-    // Looks wherever a vertex of the cell still has a site that might be nearer.
+    // Looks wherever a vertex of the cell still has a site that might be nearer, in rounds of twice the
+    // distance, so that near sites cut first.
     template <class Cell>
     [[nodiscard]] bool search(Cell& cell, site_tree::node const& home, std::uint32_t i) {
+        double done2 = -1;
+        for (double limit2 = std::max(4 * reach2_, 1.0);; limit2 *= 4) {
+            bool const last = !(4 * cell.radius2() > limit2);
+            if (!search_between(cell, home, i, done2, limit2)) return false;
+            if (last || !(4 * cell.radius2() > limit2)) return true;
+            done2 = limit2;
+        }
+    }
+
+    template <class Cell>
+    [[nodiscard]] bool search_between(Cell& cell, site_tree::node const& home, std::uint32_t i, double done2,
+                                      double limit2) {
         ivec3 const& at = sites_[i];
         for (std::uint32_t k = 0; k < tree_.nodes.size();) {
             site_tree::node const& v = tree_.nodes[k];
@@ -199,13 +212,15 @@ private:
                 double const gap = std::max(0.0, std::max(lo[a], -hi[a]));
                 near2 += gap * gap;
             }
-            // Three tests, cheapest first: too far for any vertex, seen already, out of every vertex' reach.
-            if (near2 > 4 * cell.radius2() || (tree_.is_leaf(k) && distance2(home, v) <= reach2_) ||
+            // Cheapest first: too far for now or for any vertex, seen already, out of every vertex' reach.
+            bool const leaf = tree_.is_leaf(k);
+            if (near2 > limit2 || near2 > 4 * cell.radius2() ||
+                (leaf && (near2 <= done2 || distance2(home, v) <= reach2_)) ||
                 (near2 > 0.25 * reach2_ && !cell.reachable(lo, hi))) {
                 k = v.skip;
                 continue;
             }
-            if (tree_.is_leaf(k)) {
+            if (leaf) {
                 for (std::uint32_t s = v.begin; s < v.end; ++s) {
                     if (!cell.cut(sites_[s], s)) return false;
                 }

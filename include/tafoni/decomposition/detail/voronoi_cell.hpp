@@ -348,7 +348,7 @@ private:
 
     [[nodiscard]] bool beyond(std::uint32_t v, exact::site const& other) const noexcept {
         triple const& t = triple_[v];
-        return exact::side4(site_, plane_[t[0]], plane_[t[1]], plane_[t[2]], other) > 0;
+        return exact::side4_unfiltered(site_, plane_[t[0]], plane_[t[1]], plane_[t[2]], other) > 0;
     }
 
     void decide_exactly(exact::site const& other, double n1, double floor) {
