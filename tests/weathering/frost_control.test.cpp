@@ -131,6 +131,32 @@ TEST_CASE("a run stops at the first break or the first detachment, and snapshots
     CHECK(r.paths == 90);
 }
 
+TEST_CASE("a copy of a run is a snapshot that goes on by itself") {
+    box_network const n(4, 4, 4);
+    frost_run run(n, slanting());
+    run.run({.paths = 200});
+    auto copy = run;
+    run.run({.paths = 200});
+    CHECK(copy.paths() == 200);
+    copy.run({.paths = 200});
+    CHECK((copy.checkpoint() == run.checkpoint()));
+}
+
+TEST_CASE("progress starts at 0 and ends at 1, also for no paths") {
+    box_network const n(2, 2, 2);
+    frost_run run(n, slanting());
+    for (std::uint64_t const paths : {0u, 1u, 10u, 1000u}) {
+        std::vector<double> seen;
+        run.run({.paths = paths}, {.on_progress = [&](progress_event const& e) {
+            seen.push_back(e.fraction);
+            return step_control::proceed;
+        }});
+        REQUIRE(seen.size() >= 2);
+        CHECK(seen.front() == 0);
+        CHECK(seen.back() == 1);
+    }
+}
+
 TEST_CASE("an observer that throws loses nothing") {
     box_network const n(4, 4, 4);
     frost_run whole(n, slanting());

@@ -55,6 +55,7 @@ public:
         std::uint64_t done = 0;
         bool going = !context.on_progress || context.on_progress({"weather", 0}) == step_control::proceed;
         if (!going) stopped_ = stop_reason::observer;
+        if (going && schedule.paths == 0 && context.on_progress) (void)context.on_progress({"weather", 1});
         while (going && done < schedule.paths) {
             std::uint64_t const before = core_.state.count.paths;
             std::uint64_t const broken = core_.state.count.links_broken;
@@ -139,10 +140,18 @@ public:
                                             {.kind = entity::cell, .index = c.value});
             }
         }
+        auto former_cells = core_.state.cells;
+        auto former_marks = core_.state.marks;
         core_.dirty = true;
         if (!core_.has_history()) std::fill(core_.states.begin(), core_.states.end(), link_state::bonded);
         for (cell_index const c : cells) core_.state.cells[c.value] = core_.state.marks[c.value] = as;
-        core_.rebuild();
+        try {
+            core_.rebuild();
+        } catch (...) {  // out of memory: the next call rebuilds
+            core_.state.cells.swap(former_cells);
+            core_.state.marks.swap(former_marks);
+            throw;
+        }
     }
     void mark(cell_index cell, cell_state as) { mark(std::span<cell_index const>(&cell, 1), as); }
 
