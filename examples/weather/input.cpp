@@ -2,7 +2,7 @@
 
 #include "spec.hpp"
 
-#include <tafoni/geometry/outcrop.hpp>
+#include <tafoni/field/outcrop.hpp>
 #include <tafoni/geometry/repair_solid.hpp>
 #include <tafoni/geometry/terrain_solid.hpp>
 #include <tafoni/io/esri_ascii.hpp>

@@ -42,6 +42,7 @@
 #include <tafoni/field/jittered.hpp>
 #include <tafoni/field/masked.hpp>
 #include <tafoni/field/noise.hpp>
+#include <tafoni/field/outcrop.hpp>
 #include <tafoni/field/pockets.hpp>
 #include <tafoni/field/ramp.hpp>
 #include <tafoni/field/remapped.hpp>
@@ -57,7 +58,6 @@
 #include <tafoni/geometry/inspect_mesh.hpp>
 #include <tafoni/geometry/lattice.hpp>
 #include <tafoni/geometry/make_solid.hpp>
-#include <tafoni/geometry/outcrop.hpp>
 #include <tafoni/geometry/predicates.hpp>
 #include <tafoni/geometry/repair_mesh.hpp>
 #include <tafoni/geometry/repair_solid.hpp>

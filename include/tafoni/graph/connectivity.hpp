@@ -275,9 +275,12 @@ private:
         }
         put_off_.clear();
         if (made_.empty()) return;
-        std::stable_sort(made_.begin(), made_.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return components_[a].origin < components_[b].origin;
-        });
+        order_.clear();
+        for (std::uint32_t const k : made_) {
+            order_.push_back({components_[k].origin, static_cast<std::uint32_t>(order_.size()), k});
+        }
+        std::sort(order_.begin(), order_.end());
+        for (std::size_t i = 0; i < made_.size(); ++i) made_[i] = order_[i][2];
         std::uint32_t group = 0;
         for (std::size_t i = 0; i < made_.size();) {
             std::uint32_t const origin = components_[made_[i]].origin;
@@ -335,6 +338,7 @@ private:
     std::size_t visited_ = 0;             ///< cells that the searches of this change have seen
     bool flood_instead_ = false;
     std::vector<std::uint32_t> made_{};   ///< components of this change: those that came apart and their pieces
+    std::vector<std::array<std::uint32_t, 3>> order_{};  ///< made_ by origin, then by turn
     std::vector<std::uint32_t> loose_{};  ///< cells that lost a bond after searching was given up
     std::vector<std::pair<std::uint32_t, std::uint32_t>> put_off_{};
     std::vector<fragment> fragments_{};

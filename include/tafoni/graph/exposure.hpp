@@ -62,12 +62,14 @@ template <class Network>
 /// Turns the states before and after an update into lists. Links that the update never touched are not given.
 class exposure_log {
 public:
-    void touch(link_index l, link_state before) { touched_.push_back({l, before}); }
+    void touch(link_index l, link_state before) { touched_.push_back({l, touched_.size(), before}); }
 
     void finish(std::span<link_state const> links, exposure_change& change) {
         change.opened.clear();
         change.closed.clear();
-        std::stable_sort(touched_.begin(), touched_.end(), [](entry const& a, entry const& b) { return a.link < b.link; });
+        std::sort(touched_.begin(), touched_.end(), [](entry const& a, entry const& b) {
+            return a.link != b.link ? a.link < b.link : a.turn < b.turn;
+        });
         for (std::size_t i = 0; i < touched_.size(); ++i) {
             if (i > 0 && touched_[i].link == touched_[i - 1].link) continue;
             bool const was = touched_[i].before == link_state::skin;
@@ -81,6 +83,7 @@ public:
 private:
     struct entry {
         link_index link;
+        std::size_t turn;
         link_state before;
     };
     std::vector<entry> touched_{};

@@ -1,4 +1,4 @@
-#include <tafoni/geometry/outcrop.hpp>
+#include <tafoni/field/outcrop.hpp>
 
 #include <tafoni/core/random.hpp>
 #include <tafoni/geometry/inside_columns.hpp>

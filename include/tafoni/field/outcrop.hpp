@@ -1,7 +1,7 @@
 /// \file
 /// A rock that needs no file: an outcrop with ledges and an overhanging front.
-#ifndef TAFONI_GEOMETRY_OUTCROP_HPP
-#define TAFONI_GEOMETRY_OUTCROP_HPP
+#ifndef TAFONI_FIELD_OUTCROP_HPP
+#define TAFONI_FIELD_OUTCROP_HPP
 
 #include <tafoni/core/elementary.hpp>
 #include <tafoni/core/random.hpp>
