@@ -4,6 +4,8 @@
 
 #include <tafoni/version.hpp>
 
+#include <CLI/CLI.hpp>
+
 namespace weather {
 
 std::string version_text() { return tafoni::version_string; }

@@ -1,11 +1,13 @@
 // weather frost: freeze and thaw [Mateos et al.].
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace weather {
 

@@ -21,14 +21,14 @@ struct noise_sample {
 /// hashed edge directions, C2-smooth.
 ///
 /// In [-1, 1] (the classic sum divided by its largest possible value), 0 on the lattice, mean 0;
-/// |noise(p) - noise(q)| <= 8 frequency |p - q|. Points whose scaled coordinates reach 2^51 are taken
+/// |noise(p) - noise(q)| <= 4 frequency |p - q|. Points whose scaled coordinates reach 2^51 are taken
 /// as lattice points. Models `scalar_field`.
 struct gradient_noise {
     std::uint64_t seed = 0;
     double frequency = 1;                       ///< lattice cells per length unit, >= 0
     std::array<std::uint32_t, 3> period{0, 0, 0};  ///< repeats after so many lattice cells; 0 = never
 
-    /// In [-1, 1]. O(1), about 40 ns.
+    /// In [-1, 1]. O(1), about 0.1 us.
     [[nodiscard]] double operator()(vec3 const& p) const noexcept { return evaluate<false>(p).value; }
 
     /// Value and analytic gradient. O(1).
