@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -83,75 +84,81 @@ void write_faces(Diagram& d, cell_block const& block, block_offset at, std::vect
     }
 }
 
+/// Room for the whole, judged by the part that is done.
+template <class T>
+void make_room(std::vector<T>& list, std::size_t size, double share_done) {
+    if (size > list.capacity()) list.reserve(std::max(size, static_cast<std::size_t>(1.03 * static_cast<double>(size) / share_done)));
+    list.resize(size);
+}
+
 /// Fills in the cells of `d.sites`. The blocks, and so all bits, depend on the sites alone.
+///
+/// A vertex belongs to the lowest of its sites, so a run of blocks can be written as soon as the
+/// runs before it are: only one run is held besides the result.
 template <class Diagram, class Executor>
 void assemble_diagram(Diagram& d, Executor const& pool, run_context const& context) {
-    constexpr std::size_t leaves_per_block = 32;
-    constexpr std::size_t blocks_per_tick = 128;
+    constexpr std::size_t leaves_per_block = 16;
+    constexpr std::size_t blocks_per_run = 64;
     site_tree const tree(d.sites);
     lattice_box const box{d.box_lo, d.box_hi};
     std::size_t const leaves = tree.leaves.size();
     std::size_t const block_count = (leaves + leaves_per_block - 1) / leaves_per_block;
-    std::vector<cell_block> blocks(block_count);
-    for (std::size_t done = 0; done < block_count; done += blocks_per_tick) {
-        context.tick("voronoi cells", 0.8 * static_cast<double>(done) / static_cast<double>(block_count));
-        std::size_t const todo = std::min(blocks_per_tick, block_count - done);
-        pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
-            cell_builder builder(d.sites, tree, box);
-            for (std::size_t k = done + b; k < done + e; ++k) {
-                std::size_t const stop = std::min(leaves, (k + 1) * leaves_per_block);
-                cell_builder::reserve(blocks[k], tree.nodes[tree.leaves[stop - 1]].end - tree.nodes[tree.leaves[k * leaves_per_block]].begin);
-                for (std::size_t l = k * leaves_per_block; l < stop; ++l) builder.build_leaf(tree.leaves[l], blocks[k]);
+    std::size_t const run_blocks = std::min(blocks_per_run, block_count);
+    std::vector<cell_block> blocks(run_blocks);
+    std::vector<std::unique_ptr<cell_builder>> builders(run_blocks);
+    std::vector<block_offset> offset(run_blocks + 1);
+    std::vector<std::uint32_t> vertex_begin(d.sites.size() + 1);
+    d.face_begin.resize(d.sites.size() + 1);
+
+    for (std::size_t done = 0; done < block_count; done += run_blocks) {
+        context.tick("voronoi cells", static_cast<double>(done) / static_cast<double>(block_count));
+        std::size_t const todo = std::min(run_blocks, block_count - done);
+        pool.for_blocks(todo, 4, [&](std::size_t b, std::size_t e) {
+            // Scratch memory outlives the run; a range of blocks always begins at the same one.
+            if (!builders[b]) builders[b] = std::make_unique<cell_builder>(d.sites, tree, box);
+            for (std::size_t k = b; k < e; ++k) {
+                blocks[k].clear();
+                std::size_t const first = (done + k) * leaves_per_block;
+                std::size_t const stop = std::min(leaves, first + leaves_per_block);
+                for (std::size_t l = first; l < stop; ++l) builders[b]->build_leaf(tree.leaves[l], blocks[k]);
             }
         });
-    }
 
-    std::vector<block_offset> offset(block_count + 1);
-    std::vector<std::uint32_t> vertex_begin(d.sites.size() + 1);
-    for (std::size_t k = 0; k < block_count; ++k) {
-        cell_block const& b = blocks[k];
-        block_offset o = offset[k];
-        for (auto const& c : b.cells) {
-            vertex_begin[o.cell++] = static_cast<std::uint32_t>(o.vertex);
-            o.face += c.faces;
-            o.corner += c.corners;
-            o.vertex += c.own;
+        for (std::size_t k = 0; k < todo; ++k) {
+            block_offset o = offset[k];
+            for (auto const& c : blocks[k].cells) {
+                vertex_begin[o.cell++] = static_cast<std::uint32_t>(o.vertex);
+                o.face += c.faces;
+                o.corner += c.corners;
+                o.vertex += c.own;
+            }
+            offset[k + 1] = o;
         }
-        offset[k + 1] = o;
-    }
-    block_offset const total = offset.back();
-    if (total.corner >= std::numeric_limits<std::uint32_t>::max()) {
-        fail<invalid_input>(errc::size_overflow, "make_voronoi_diagram: " + std::to_string(total.corner) +
-                                                     " face corners exceed 32-bit indices");
-    }
-    vertex_begin[total.cell] = static_cast<std::uint32_t>(total.vertex);
-
-    context.tick("voronoi cells", 0.85);
-    d.vertices.resize(total.vertex);
-    d.keys.resize(total.vertex);
-    pool.for_blocks(block_count, 16, [&](std::size_t b, std::size_t e) {
-        for (std::size_t k = b; k < e; ++k) {
+        block_offset const total = offset[todo];
+        if (total.corner >= std::numeric_limits<std::uint32_t>::max()) {
+            fail<invalid_input>(errc::size_overflow, "make_voronoi_diagram: " + std::to_string(total.corner) +
+                                                         " face corners exceed 32-bit indices");
+        }
+        vertex_begin[total.cell] = static_cast<std::uint32_t>(total.vertex);
+        d.face_begin[total.cell] = static_cast<std::uint32_t>(total.face);
+        double const share = static_cast<double>(total.cell) / static_cast<double>(d.sites.size());
+        make_room(d.vertices, total.vertex, share);
+        make_room(d.keys, total.vertex, share);
+        make_room(d.neighbour, total.face, share);
+        make_room(d.corner_begin, total.face + 1, share);
+        make_room(d.corners, total.corner, share);
+        d.corner_begin[total.face] = static_cast<std::uint32_t>(total.corner);
+        for (std::size_t k = 0; k < todo; ++k) {
             auto const to = static_cast<std::ptrdiff_t>(offset[k].vertex);
             std::copy(blocks[k].own_key.begin(), blocks[k].own_key.end(), d.keys.begin() + to);
             std::copy(blocks[k].own_position.begin(), blocks[k].own_position.end(), d.vertices.begin() + to);
-            blocks[k].own_key = {};
-            blocks[k].own_position = {};
         }
-    });
-    d.face_begin.resize(total.cell + 1);
-    d.neighbour.resize(total.face);
-    d.corner_begin.resize(total.face + 1);
-    d.corners.resize(total.corner);
-    d.face_begin[total.cell] = static_cast<std::uint32_t>(total.face);
-    d.corner_begin[total.face] = static_cast<std::uint32_t>(total.corner);
-    context.tick("voronoi cells", 0.9);
-    pool.for_blocks(block_count, 16, [&](std::size_t b, std::size_t e) {
-        std::vector<std::uint32_t> global;
-        for (std::size_t k = b; k < e; ++k) {
-            write_faces(d, blocks[k], offset[k], vertex_begin, global);
-            blocks[k] = {};
-        }
-    });
+        pool.for_blocks(todo, 4, [&](std::size_t b, std::size_t e) {
+            std::vector<std::uint32_t> global;
+            for (std::size_t k = b; k < e; ++k) write_faces(d, blocks[k], offset[k], vertex_begin, global);
+        });
+        offset[0] = total;
+    }
 }
 
 }  // namespace tafoni::detail

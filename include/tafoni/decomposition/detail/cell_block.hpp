@@ -37,6 +37,16 @@ struct cell_block {
     std::vector<std::uint32_t> corner_large;  ///< the same of all other cells
     std::vector<vertex_key> own_key;
     std::vector<vec3> own_position;
+
+    void clear() noexcept {
+        cells.clear();
+        neighbour.clear();
+        degree.clear();
+        corner_small.clear();
+        corner_large.clear();
+        own_key.clear();
+        own_position.clear();
+    }
 };
 
 #if defined(__AVX__)
@@ -50,16 +60,6 @@ class cell_builder {
 public:
     cell_builder(std::span<ivec3 const> sites, site_tree const& tree, lattice_box const& box)
         : sites_(sites), tree_(tree), box_(box), small_(std::make_unique<voronoi_cell<64>>()) {}
-
-    /// Room for the cells of `count` usual sites.
-    static void reserve(cell_block& out, std::size_t count) {
-        out.cells.reserve(count);
-        out.neighbour.reserve(17 * count);
-        out.degree.reserve(17 * count);
-        out.corner_small.reserve(180 * count);
-        out.own_key.reserve(8 * count);
-        out.own_position.reserve(8 * count);
-    }
 
     void build_leaf(std::uint32_t leaf, cell_block& out) {
         site_tree::node const& home = tree_.nodes[leaf];
