@@ -38,21 +38,11 @@ struct surface_pieces {
     std::vector<std::uint32_t> triangle_of{};    ///< per piece
 };
 
-/// Where the triangle meets the bisectors (i, k) and (i, l); stays in the triangle. Lattice units.
-[[nodiscard]] inline vec3 point_in_triangle(ivec3 const& si, ivec3 const& sk, ivec3 const& sl,
-                                            std::array<ivec3, 3> const& q) noexcept {
-    vec3 const u = difference(q[1], q[0]);
-    vec3 const v = difference(q[2], q[0]);
-    vec3 const base = difference(q[0], si);
-    // Two equations for the position q0 + a u + b v, the larger pivot first.
-    std::array<double, 3> r{};
-    std::array<double, 3> s{};
-    auto const row = [&](ivec3 const& other) {
-        vec3 const n = difference(other, si);
-        return std::array<double, 3>{2 * dot(n, u), 2 * dot(n, v), squared_length(n) - 2 * dot(n, base)};
-    };
-    r = row(sk);
-    s = row(sl);
+/// Weights of u and v where both bisectors are met, in doubles, the larger pivot first.
+[[nodiscard]] inline std::array<double, 2> rounded_weights(vec3 const& nk, vec3 const& nl, vec3 const& u, vec3 const& v,
+                                                           vec3 const& base) noexcept {
+    std::array<double, 3> r{2 * dot(nk, u), 2 * dot(nk, v), squared_length(nk) - 2 * dot(nk, base)};
+    std::array<double, 3> s{2 * dot(nl, u), 2 * dot(nl, v), squared_length(nl) - 2 * dot(nl, base)};
     std::size_t x = 0;
     double best = std::fabs(r[0]);
     bool second = false;
@@ -68,6 +58,33 @@ struct surface_pieces {
         double const pivot = s[y] - factor * r[y];
         w[y] = pivot != 0 ? (s[2] - factor * r[2]) / pivot : 1.0 / 3;
         w[x] = (r[2] - r[y] * w[y]) / r[x];
+    }
+    return w;
+}
+
+/// Where the triangle meets the bisectors (i, k) and (i, l); stays in the triangle. Lattice units.
+[[nodiscard]] inline vec3 point_in_triangle(ivec3 const& si, ivec3 const& sk, ivec3 const& sl,
+                                            std::array<ivec3, 3> const& q) noexcept {
+    vec3 const u = difference(q[1], q[0]);
+    vec3 const v = difference(q[2], q[0]);
+    vec3 const nk = difference(sk, si);
+    vec3 const nl = difference(sl, si);
+    // Two equations for the position q0 + w0 u + w1 v.
+    std::array<double, 2> w{1.0 / 3, 1.0 / 3};
+    double const steepness = std::fabs(dot(cross(nk, nl), cross(u, v)));
+    if (steepness > bisector_row::steep * (length(nk) * length(nl)) * (length(u) * length(v))) {
+        w = rounded_weights(nk, nl, u, v, difference(q[0], si));
+    } else {
+        bisector_row const r(sk, si, q[0]);
+        bisector_row const s(sl, si, q[0]);
+        tafoni::wide_int<2> const ru = r.along(q[1], q[0]);
+        tafoni::wide_int<2> const rv = r.along(q[2], q[0]);
+        tafoni::wide_int<2> const su = s.along(q[1], q[0]);
+        tafoni::wide_int<2> const sv = s.along(q[2], q[0]);
+        if (auto const whole = ru * sv - rv * su; whole.sign() != 0) {
+            w[0] = to_double(r.offset() * sv - rv * s.offset()) / to_double(whole);
+            w[1] = to_double(ru * s.offset() - r.offset() * su) / to_double(whole);
+        }
     }
     for (double& c : w) {
         if (!(c > 0)) c = 0;

@@ -3,6 +3,7 @@
 #ifndef TAFONI_DECOMPOSITION_DETAIL_SURFACE_WALK_HPP
 #define TAFONI_DECOMPOSITION_DETAIL_SURFACE_WALK_HPP
 
+#include <tafoni/decomposition/detail/bisector_row.hpp>
 #include <tafoni/decomposition/detail/collect_blocks.hpp>
 #include <tafoni/decomposition/detail/surface_signs.hpp>
 
@@ -39,11 +40,16 @@ struct surface_walk {
 
 /// Where segment a b meets the bisector of two sites; stays on the segment. Lattice units.
 [[nodiscard]] inline vec3 point_on_edge(ivec3 const& si, ivec3 const& sk, ivec3 const& a, ivec3 const& b) noexcept {
+    bisector_row const row(sk, si, a);
     vec3 const n = difference(sk, si);
-    vec3 const va = difference(a, si);
     vec3 const d = difference(b, a);
     double const along = 2 * dot(n, d);
-    double t = along != 0 ? (squared_length(n) - 2 * dot(n, va)) / along : 0.5;
+    double t = 0.5;
+    if (std::fabs(along) > bisector_row::steep * (length(n) * length(d))) {
+        t = (squared_length(n) - 2 * dot(n, difference(a, si))) / along;
+    } else if (auto const exact = row.along(b, a); exact.sign() != 0) {
+        t = to_double(row.offset()) / to_double(exact);
+    }
     if (!(t > 0)) t = 0;
     if (t > 1) t = 1;
     vec3 const p = lattice_frame::to_double(a);
