@@ -57,10 +57,12 @@ paths=$((3 * every))
 need_packages "$install" g++ cmake ninja-build libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev \
     nlohmann-json3-dev f3d xvfb xauth imagemagick gnuplot-nox || exit 1
 
+mkdir -p "$build"
+log=$build/weather.log
 echo "building weather (Release) in $build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTAFONI_BUILD_TESTS=OFF \
-    -DTAFONI_BUILD_BENCHMARKS=OFF -DTAFONI_BUILD_EXAMPLES=ON > "$build.log" 2>&1 || { mkdir -p "$build"; cat "$build.log" >&2; exit 1; }
-cmake --build "$build" --target weather -j "$jobs" >> "$build.log" 2>&1 || { tail -40 "$build.log" >&2; exit 1; }
+    -DTAFONI_BUILD_BENCHMARKS=OFF -DTAFONI_BUILD_EXAMPLES=ON > "$log" 2>&1 || { cat "$log" >&2; exit 1; }
+cmake --build "$build" --target weather -j "$jobs" >> "$log" 2>&1 || { tail -40 "$log" >&2; exit 1; }
 weather=$build/examples/weather/weather
 
 # Down, the rain (slanting on to the front), the camera (looking at the front from above), by the axis that is up.

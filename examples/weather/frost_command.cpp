@@ -64,6 +64,7 @@ CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     c->add_option("--format", a.formats, "obj,ply,stl,vtp")->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
     c->add_option("--progress", a.progress, "bar, json or none; default: bar on a terminal")->check(CLI::IsMember({"bar", "json", "none", "auto"}));
     c->add_flag("--separate-blocks", a.separate_blocks, "one file for each fallen block");
+    c->add_flag("--graphs", a.graphs, "write links.vtp, bonds.vtp and paths.vtp, to look at");
     c->add_flag("--stop-at-break", a.stop_at_break, "stop when the first link breaks");
     c->add_flag("--stop-at-fall", a.stop_at_fall, "stop when the first block falls");
     return c;

@@ -40,6 +40,7 @@ struct frost_arguments {
     std::vector<std::string> formats{"vtp", "obj"};
     std::string progress = "auto";
     bool separate_blocks = false;
+    bool graphs = false;
     bool stop_at_break = false;
     bool stop_at_fall = false;
 };

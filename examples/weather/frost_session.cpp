@@ -6,6 +6,7 @@
 
 #include <tafoni/decomposition/voronoi_shards.hpp>
 #include <tafoni/graph/make_link_graph.hpp>
+#include <tafoni/io/graph_vtp.hpp>
 #include <tafoni/version.hpp>
 
 #include <unistd.h>
@@ -288,10 +289,43 @@ void frost_session::write_blocks(run_type const& run) {
     out_.write_text("blocks.json", manifest.dump(1) + "\n");
 }
 
+void frost_session::write_graphs(run_type const& run) const {
+    std::vector<double> life;
+    std::vector<link_state> states;
+    for (std::size_t l = 0; l < links_.link_count(); ++l) {
+        life.push_back(run.life(link_index{l}));
+        states.push_back(run.state(link_index{l}));
+    }
+    write_links(out_.folder() / "links.vtp", links_, {.life = life, .states = states});
+    write_bonds(out_.folder() / "bonds.vtp", links_, shards_.centroids, {.life = life, .states = states});
+    // The paths that would come next; looking changes nothing.
+    std::size_t const count = 200;
+    std::vector<std::vector<link_index>> ways(count);
+    std::vector<std::vector<double>> left(count);
+    std::vector<water_path> paths;
+    std::vector<path_visit> visits;
+    for (std::size_t k = 0; k < count; ++k) {
+        visits.clear();
+        path_trace const trace = run.trace(run.paths() + k, visits);
+        if (!trace.entry.valid() || trace.inflow <= 0) continue;
+        std::int64_t water = trace.inflow;
+        ways[k].push_back(trace.entry);
+        left[k].push_back(1);
+        for (path_visit const& v : visits) {
+            ways[k].push_back(v.link);
+            left[k].push_back(static_cast<double>(water) / static_cast<double>(trace.inflow));
+            water -= v.absorbed;
+        }
+        paths.push_back({.links = ways[k], .water = left[k]});
+    }
+    write_paths(out_.folder() / "paths.vtp", links_, std::span<water_path const>(paths));
+}
+
 void frost_session::write_results(run_type const& run) {
     progress_.show("write", 0);
     out_.write("weathered", standing(run));
     write_blocks(run);
+    if (a_.graphs) write_graphs(run);
     std::string history = "paths,links_broken,cells_detached,volume_standing\n";
     for (std::string const& row : history_) history += row;
     out_.write_text("history.csv", history);

@@ -35,6 +35,7 @@ private:
     void write_snapshot(run_type const& run);
     void write_results(run_type const& run);
     void write_blocks(run_type const& run);
+    void write_graphs(run_type const& run) const;
     void add_history(run_type const& run);
     void write_report(run_type const& run);
     [[nodiscard]] surface_colours colours(run_type const& run) const;

@@ -2,7 +2,8 @@
 # What the tool `weather` promises: exit codes, keys of the report, equal bytes for equal runs, resuming.
 #   sh tests/tool/weather.sh PATH/TO/weather EMPTY/FOLDER
 set -u
-weather=$1
+weather=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+[ -x "$weather" ] || { echo "no tool at $1"; exit 1; }
 rm -rf "$2"
 mkdir -p "$2"
 cd "$2" || exit 1
@@ -157,7 +158,8 @@ for cells in none plane:point=0,0,1 box:lo=-9,-9,0,hi=9,9,1 bottom exterior exte
     expect 0 core "$weather" frost $rock -o core --shards 40 --core "$cells" --paths 20 --format obj
     expect 0 air "$weather" frost $rock -o air --shards 40 --air "$cells" --core artificial --paths 0 --format obj
 done
-expect 0 addon "$weather" frost $rock -o addon --shards 40 --preset addon --paths 200 --format obj --separate-blocks
+expect 0 addon "$weather" frost $rock -o addon --shards 40 --preset addon --paths 200 --format obj --separate-blocks --graphs
+for file in links.vtp bonds.vtp paths.vtp; do [ -s addon/$file ] || complain "addon/$file is missing"; done
 
 [ $failed -eq 0 ] && echo "all passed"
 exit $failed
