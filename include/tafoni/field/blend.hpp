@@ -4,6 +4,7 @@
 #define TAFONI_FIELD_BLEND_HPP
 
 #include <tafoni/field/concepts.hpp>
+#include <tafoni/field/detail/mix.hpp>
 
 namespace tafoni {
 
@@ -19,7 +20,15 @@ struct blend {
         double const w = weight(p);
         double const t = w > 0 ? (w < 1 ? w : 1.0) : 0.0;
         double const a = first(p);
-        return a + t * (second(p) - a);
+        double const b = second(p);
+        return detail::mix(a, b, t);
+    }
+
+    /// Asks the three fields. \throws invalid_input  as they do.
+    void validate() const {
+        if constexpr (requires { first.validate(); }) first.validate();
+        if constexpr (requires { second.validate(); }) second.validate();
+        if constexpr (requires { weight.validate(); }) weight.validate();
     }
 };
 

@@ -5,13 +5,15 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/field/concepts.hpp>
+#include <tafoni/field/detail/mix.hpp>
 
 #include <array>
-#include <concepts>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 
 namespace tafoni {
 
@@ -26,7 +28,7 @@ struct grid_field {
     vec3 origin{0, 0, 0};                     ///< of sample (0, 0, 0)
     vec3 spacing{1, 1, 1};                    ///< > 0, length unit
 
-    /// O(1).
+    /// Expects what `validate` asks for. O(1).
     [[nodiscard]] double operator()(vec3 const& p) const noexcept {
         std::array<std::size_t, 3> low;
         std::array<std::size_t, 3> high;
@@ -42,11 +44,11 @@ struct grid_field {
             t[a] = u - cell;
         }
         auto const along_x = [&](std::size_t j, std::size_t k) {
-            return mixed(at(low[0], j, k), at(high[0], j, k), t[0]);
+            return detail::mix(at(low[0], j, k), at(high[0], j, k), t[0]);
         };
-        double const below = mixed(along_x(low[1], low[2]), along_x(high[1], low[2]), t[1]);
-        double const above = mixed(along_x(low[1], high[2]), along_x(high[1], high[2]), t[1]);
-        return mixed(below, above, t[2]);
+        double const below = detail::mix(along_x(low[1], low[2]), along_x(high[1], low[2]), t[1]);
+        double const above = detail::mix(along_x(low[1], high[2]), along_x(high[1], high[2]), t[1]);
+        return detail::mix(below, above, t[2]);
     }
 
     /// \throws invalid_input  if sizes do not fit the samples, a spacing is not positive or a sample not finite.
@@ -82,7 +84,6 @@ struct grid_field {
     }
 
 private:
-    [[nodiscard]] static double mixed(double a, double b, double t) noexcept { return (1 - t) * a + t * b; }
     [[nodiscard]] double at(std::size_t i, std::size_t j, std::size_t k) const noexcept {
         return static_cast<double>(samples[i + size[0] * (j + size[1] * k)]);
     }

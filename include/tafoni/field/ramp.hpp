@@ -5,6 +5,7 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/field/concepts.hpp>
+#include <tafoni/field/detail/mix.hpp>
 
 namespace tafoni {
 
@@ -22,8 +23,7 @@ struct ramp_field {
         vec3 const way = p - start;
         double const t = dot(way, axis) / dot(axis, axis);
         if (!(t > 0)) return at_start;
-        if (t >= 1) return at_end;
-        return at_start + t * (at_end - at_start);
+        return detail::mix(at_start, at_end, t);
     }
 
     /// \throws invalid_input  if start and end coincide or are not finite.

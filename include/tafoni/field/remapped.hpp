@@ -5,6 +5,7 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/field/concepts.hpp>
+#include <tafoni/field/detail/mix.hpp>
 
 namespace tafoni {
 
@@ -22,8 +23,7 @@ struct remapped {
     [[nodiscard]] double operator()(vec3 const& p) const {
         double const t = (base(p) - from_low) / (from_high - from_low);
         if (!(t > 0)) return to_low;
-        if (t >= 1) return to_high;
-        return to_low + t * (to_high - to_low);
+        return detail::mix(to_low, to_high, t);
     }
 
     /// \throws invalid_input  if the range that is read is empty or a bound is not finite.

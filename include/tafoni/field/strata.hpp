@@ -20,7 +20,7 @@ struct strata {
     std::vector<double> tops{};    ///< ascending, length unit
     std::vector<double> values{};  ///< one more than tops, from below
 
-    /// O(log layers).
+    /// Expects what `validate` asks for. O(log layers).
     [[nodiscard]] double operator()(vec3 const& p) const noexcept {
         auto const k = std::upper_bound(tops.begin(), tops.end(), dot(up, p)) - tops.begin();
         return values[static_cast<std::size_t>(k)];
