@@ -51,7 +51,7 @@ std::string numbered(char const* prefix, std::uint64_t n, int digits) {
 
 nlohmann::ordered_json json_of(vec3 const& v) { return {v[0], v[1], v[2]}; }
 
-/// Makes the folder; everything that can be refused is refused before any work.
+/// Made only once the input has been accepted, so that a refused run leaves nothing behind.
 std::filesystem::path made_folder(std::string const& name) {
     std::error_code error;
     std::filesystem::create_directories(name, error);
@@ -357,6 +357,19 @@ void frost_session::write_report(run_type const& run) {
                        {"water", a_.water}, {"absorb", a_.absorb}, {"gravity", json_of(gravity_)},
                        {"resistance", a_.resistance}, {"core", core}, {"air", a_.air}, {"preset", a_.preset},
                        {"snapshots", a_.snapshots}, {"format", a_.formats}, {"separate_blocks", a_.separate_blocks}};
+    auto const& absorption = run.process().absorb.absorption;
+    auto const& soaking = run.process().absorb.soaking;
+    auto const& breakage = run.process().wear.breakage;
+    auto const& flow = run.process().flow.flow;
+    // k_solid, k_air and k_dmg are those for a link of the mean area.
+    j["coefficients"] = {{"mean_area", run.scale().mean_area}, {"k_solid", absorption.k_solid}, {"k_air", absorption.k_air},
+                         {"k_res", absorption.k_res}, {"k_dmg", run.process().wear.harm.k_dmg},
+                         {"resistance_weight", flow.resistance_weight}, {"alignment_cutoff", flow.alignment_cutoff},
+                         {"passage_floor", flow.passage_floor}, {"exit_weight", flow.exit_weight},
+                         {"entry_cutoff", run.process().rain.infiltration.cutoff}, {"soak_threshold", soaking.threshold},
+                         {"soak_continue_chance", soaking.continue_chance}, {"soak_wearing", soaking.wearing},
+                         {"k_break", breakage.k_break}, {"break_p_max", breakage.p_max}, {"break_p_min", breakage.p_min}};
+    j["bounds"] = {{"lo", json_of(body_.bounds.lo)}, {"hi", json_of(body_.bounds.hi)}};
     j["threads"] = a_.threads;
     j["stopped"] = reasons[stopped_ ? 3 : r.paths < a_.paths ? static_cast<int>(r.stopped) : 0];
     j["repaired"] = repaired_;

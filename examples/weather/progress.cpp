@@ -36,10 +36,10 @@ tafoni::step_control progress::show(std::string_view stage, double fraction, std
         int const full = static_cast<int>(fraction * width);
         char percent[8];
         std::snprintf(percent, sizeof percent, "%3d %%", static_cast<int>(fraction * 100));
-        std::string line = "[" + std::string(static_cast<std::size_t>(full), '#') +
-                           std::string(static_cast<std::size_t>(width - full), ' ') + "] " + percent + "  " +
-                           std::string(stage);
-        if (!note.empty()) line += "  " + note;
+        std::string line(1, '[');
+        line.append(static_cast<std::size_t>(full), '#').append(static_cast<std::size_t>(width - full), ' ');
+        line.append("] ").append(percent).append("  ").append(stage);
+        if (!note.empty()) line.append("  ").append(note);
         if (line != last_line_) {
             std::fprintf(stderr, "\r%s\033[K", line.c_str());
             last_line_ = std::move(line);
