@@ -135,6 +135,8 @@ private:
             cut.clear();
             triangulate_face(c, f, cut);
             for (auto const& v : cut) {
+                // A bridge to a hole that touches the outline leaves triangles with one corner twice: nothing.
+                if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
                 triangles.push_back({v[0].value, in_front ? v[1].value : v[2].value, in_front ? v[2].value : v[1].value});
                 out.cell.push_back(in_front ? front : back);
                 out.face.push_back(f);
@@ -145,8 +147,10 @@ private:
         template <class C>
         shard_surface finish(C const& c) {
             require_indexable("extract_surface", 3 * triangles.size());
-            auto const opposite =
-                pair_half_edges(triangles, [&c](std::uint32_t v) { return c.position(vertex_index{v}); });
+            auto const places = [&c](std::uint32_t v) { return c.position(vertex_index{v}); };
+            bool crowded = false;
+            auto opposite = pair_half_edges(triangles, places, crowded);
+            if (crowded && drop_opposites()) opposite = pair_half_edges(triangles, places, crowded);
             std::uint32_t const vertices = weld_corners(opposite, out.mesh.corners);
             out.mesh.positions.resize(vertices);
             out.vertex.resize(vertices);
@@ -158,6 +162,25 @@ private:
             for (std::size_t v = 0; v < vertices; ++v) out.mesh.positions[v] = c.position(out.vertex[v]);
             split_shared_edges(out, opposite);
             return std::move(out);
+        }
+
+        /// Takes out triangles that lie back to back; false when there are none.
+        bool drop_opposites() {
+            auto const stays = without_opposites(triangles);
+            std::size_t kept = 0;
+            for (std::size_t t = 0; t < stays.size(); ++t) {
+                if (stays[t] == 0) continue;
+                triangles[kept] = triangles[t];
+                out.cell[kept] = out.cell[t];
+                out.face[kept] = out.face[t];
+                out.fresh[kept++] = out.fresh[t];
+            }
+            if (kept == stays.size()) return false;
+            triangles.resize(kept);
+            out.cell.resize(kept);
+            out.face.resize(kept);
+            out.fresh.resize(kept);
+            return true;
         }
 
         face_triangulator triangulate_face{};

@@ -20,12 +20,46 @@ namespace tafoni::detail {
 /// Half-edge h = 3 t + k runs from corner k to corner k + 1 of triangle t.
 [[nodiscard]] inline std::size_t next_corner(std::size_t h) noexcept { return h % 3 == 2 ? h - 2 : h + 1; }
 
+/// Which of the triangles stay when pairs with the same three corners, seen from opposite sides, are taken out.
+/// They enclose nothing, and the rest is as closed as before. O(n log n).
+[[nodiscard]] inline std::vector<std::uint8_t> without_opposites(std::span<std::array<std::uint32_t, 3> const> triangles) {
+    struct entry {
+        std::array<std::uint32_t, 3> sorted;
+        bool even;
+        std::uint32_t t;
+    };
+    std::vector<entry> entries(triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        auto v = triangles[t];
+        bool const even = ((v[0] < v[1]) + (v[1] < v[2]) + (v[2] < v[0])) == 2;
+        std::sort(v.begin(), v.end());
+        entries[t] = {v, even, t};
+    }
+    std::sort(entries.begin(), entries.end(), [](entry const& x, entry const& y) {
+        if (x.sorted != y.sorted) return x.sorted < y.sorted;
+        return x.even != y.even ? x.even : x.t < y.t;
+    });
+    std::vector<std::uint8_t> stays(triangles.size(), 1);
+    for (std::size_t first = 0; first < entries.size();) {
+        std::size_t turn = first;
+        while (turn < entries.size() && entries[turn].sorted == entries[first].sorted && entries[turn].even) ++turn;
+        std::size_t last = turn;
+        while (last < entries.size() && entries[last].sorted == entries[first].sorted) ++last;
+        for (std::size_t a = first, b = turn; a < turn && b < last; ++a, ++b) {
+            stays[entries[a].t] = 0;
+            stays[entries[b].t] = 0;
+        }
+        first = last;
+    }
+    return stays;
+}
+
 /// Pairs the half-edges of closed, oriented triangles: each with the one that bounds the same wedge
 /// of the solid. Where more than two triangles meet at an edge they are sorted by angle around it
-/// (without trigonometry). O(n log n).
+/// (without trigonometry), and `crowded` is set. O(n log n).
 template <class Places>
 [[nodiscard]] std::vector<std::uint32_t> pair_half_edges(std::span<std::array<std::uint32_t, 3> const> triangles,
-                                                         Places const& places) {
+                                                         Places const& places, bool& crowded) {
     struct side {
         std::uint32_t low;
         std::uint32_t high;
@@ -57,6 +91,7 @@ template <class Places>
         if (n == 2) {
             pair(sides[first], sides[first + 1]);
         } else {
+            crowded = true;
             // Seen against the edge, the solid lies behind a forward triangle and before a backward one.
             vec3 const o = places(sides[first].low);
             vec3 const axis = normalized(vec3(places(sides[first].high) - o));
