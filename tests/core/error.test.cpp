@@ -72,6 +72,20 @@ TEST_CASE("require_range accepts its ends and refuses NaN, infinities and what l
     }
 }
 
+TEST_CASE("numbers in messages are short, exact and the same in every locale") {
+    CHECK(detail::number_text(0.5) == "0.5");
+    CHECK(detail::number_text(1e-9) == "1e-09");
+    CHECK(detail::number_text(-1e300) == "-1e+300");
+    CHECK(detail::number_text(std::numeric_limits<double>::quiet_NaN()) == "nan");
+    CHECK(detail::number_text(-std::numeric_limits<double>::denorm_min()) == "-5e-324");
+    try {
+        detail::require_range("x.y", 1e-9, 1e-3, 1e300);
+        FAIL("accepted");
+    } catch (invalid_input const& e) {
+        CHECK(std::string(e.what()) == "x.y: got 1e-09, allowed [0.001, 1e+300]");
+    }
+}
+
 TEST_CASE("the numbers of the codes are stable") {
     CHECK(static_cast<int>(errc::empty_input) == 1);
     CHECK(static_cast<int>(errc::attribute_length) == 15);

@@ -11,12 +11,15 @@ TEST_CASE("an index is not valid until it is given a number") {
     CHECK_FALSE(cell_index{}.valid());
     CHECK(cell_index{0U}.valid());
     CHECK(cell_index{std::size_t{7}}.value == 7);
+    CHECK(cell_index{7} == cell_index{7U});
+    CHECK(cell_index{std::uint8_t{7}}.value == 7);
     CHECK(sizeof(link_index) == 4);
 }
 
 TEST_CASE("indices of different kinds do not convert into each other or into numbers") {
     CHECK_FALSE(std::is_convertible_v<cell_index, link_index>);
     CHECK_FALSE(std::is_constructible_v<cell_index, link_index>);
+    CHECK_FALSE(std::is_constructible_v<cell_index, double>);
     CHECK_FALSE(std::is_convertible_v<std::uint32_t, cell_index>);
     CHECK_FALSE(std::is_convertible_v<cell_index, std::uint32_t>);
     CHECK_FALSE(std::equality_comparable_with<cell_index, link_index>);

@@ -4,6 +4,7 @@
 #define TAFONI_CORE_ERROR_HPP
 
 #include <cassert>
+#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -125,12 +126,18 @@ template <class Error>
     throw Error(code, what, std::move(place));
 }
 
+/// The shortest text that names the number, the same in every locale: 1e-09, not 0.000000.
+[[nodiscard]] inline std::string number_text(double value) {
+    char text[32];
+    return std::string(text, std::to_chars(text, text + sizeof(text), value).ptr);
+}
+
 /// Throws `bad_parameter` unless lo <= value <= hi; NaN fails. `name` reads "type.member".
 inline void require_range(char const* name, double value, double lo, double hi) {
     if (!(value >= lo && value <= hi)) {
         fail<invalid_input>(errc::bad_parameter,
-                            std::string(name) + ": got " + std::to_string(value) + ", allowed [" +
-                                std::to_string(lo) + ", " + std::to_string(hi) + "]",
+                            std::string(name) + ": got " + number_text(value) + ", allowed [" + number_text(lo) +
+                                ", " + number_text(hi) + "]",
                             {.kind = entity::parameter, .value = value, .limit = value < lo ? lo : hi});
     }
 }

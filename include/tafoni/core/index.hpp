@@ -6,6 +6,7 @@
 #include <tafoni/core/error.hpp>
 
 #include <compare>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,8 +23,9 @@ struct strong_index {
     std::uint32_t value = none;
 
     constexpr strong_index() = default;
-    constexpr explicit strong_index(std::uint32_t v) noexcept : value(v) {}
-    constexpr explicit strong_index(std::size_t v) noexcept : value(static_cast<std::uint32_t>(v)) {}
+    /// From any whole number below 2^32 - 1; see `detail::require_indexable`.
+    template <std::integral Number>
+    constexpr explicit strong_index(Number v) noexcept : value(static_cast<std::uint32_t>(v)) {}
 
     [[nodiscard]] constexpr bool valid() const noexcept { return value != none; }
     friend constexpr auto operator<=>(strong_index, strong_index) = default;

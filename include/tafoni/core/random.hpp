@@ -53,7 +53,7 @@ public:
     /// Uniform in [0, 1), a multiple of 2^-53.
     [[nodiscard]] constexpr double uniform01() noexcept { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
-    /// Uniform in [lo, hi).
+    /// Uniform in [lo, hi], lo <= hi; `hi` itself comes up by rounding only. hi - lo must be finite.
     [[nodiscard]] constexpr double uniform(double lo, double hi) noexcept { return lo + (hi - lo) * uniform01(); }
 
     /// Uniform in 0 .. n-1 without bias [Lemire 2019]; n > 0.

@@ -11,7 +11,8 @@
 
 namespace tafoni {
 
-/// An observer's answer: go on, finish early and keep what is done, or give up.
+/// An observer's answer: go on, or stop. What a stop keeps is for each algorithm to say: a run keeps what
+/// is done, an algorithm whose part results are of no use throws `cancelled`.
 enum class step_control { proceed, stop };
 
 /// Told at least once at the start (fraction 0) and at the end (1) of each stage; never decreases in a stage.

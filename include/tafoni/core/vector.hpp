@@ -12,12 +12,12 @@ namespace tafoni {
 /// A point or a vector, in the unit of the user's model.
 using vec3 = Eigen::Vector3d;
 
-/// Scalar product, summed x, y, z in this order (Eigen's order changes with the instruction set).
+/// Scalar product a . b, in the squared unit, summed x, y, z in this order (Eigen's order changes with the instruction set).
 [[nodiscard]] inline double dot(vec3 const& a, vec3 const& b) noexcept {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Vector product.
+/// Vector product a x b, in the squared unit.
 [[nodiscard]] inline vec3 cross(vec3 const& a, vec3 const& b) noexcept {
     return vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -26,7 +26,8 @@ using vec3 = Eigen::Vector3d;
 
 [[nodiscard]] inline double length(vec3 const& a) noexcept { return std::sqrt(dot(a, a)); }
 
-/// `a` scaled to unit length; the zero vector stays zero.
+/// `a` scaled to unit length; the zero vector stays zero. Lengths beyond 1e-150 .. 1e150, whose square
+/// is no normal number, may give zero as well.
 [[nodiscard]] inline vec3 normalized(vec3 const& a) noexcept {
     double const l = length(a);
     if (!(l > 0)) return vec3{0, 0, 0};
