@@ -7,7 +7,10 @@
 
 #include <support/shapes.hpp>
 
+#include <array>
+#include <limits>
 #include <set>
+#include <vector>
 
 using namespace tafoni;
 
@@ -157,4 +160,41 @@ TEST_CASE("triangles in one place or without area do no harm") {
     CHECK(hit->distance == 2);
     CHECK(hit->triangle == 0);
     CHECK_FALSE(tree.first_hit(vec3{1, 2, 5}, vec3{0, 0, -1}));
+}
+
+TEST_CASE("a tree refuses dangling corners and coordinates that are not finite, and a bad refit changes nothing") {
+    std::vector<vec3> p{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 7}};
+    std::vector<std::array<std::uint32_t, 3>> t{{0, 1, 2}, {0, 1, 3}};
+    bvh tree(p, t);
+    auto const code = [](auto const& call) {
+        try {
+            call();
+        } catch (invalid_input const& e) {
+            return e.code();
+        }
+        return errc{};
+    };
+    auto moved = p;
+    moved[3][1] = std::numeric_limits<double>::quiet_NaN();
+    auto dangling = t;
+    dangling[1][2] = 4;
+    CHECK(code([&] { (void)bvh(moved, t); }) == errc::non_finite_vertex);
+    CHECK(code([&] { (void)bvh(p, dangling); }) == errc::index_out_of_range);
+    CHECK(code([&] { tree.refit(moved, t); }) == errc::non_finite_vertex);
+    CHECK(code([&] { tree.refit(p, dangling); }) == errc::index_out_of_range);
+    t.pop_back();
+    CHECK(code([&] { tree.refit(p, t); }) == errc::attribute_length);
+    CHECK(tree.nearest_point({0, 0, 9})->distance == 2);
+    CHECK(tree.size() == 2);
+}
+
+TEST_CASE("no point of an empty tree is nearest, and none to a point that is nowhere") {
+    bvh const nothing;
+    CHECK_FALSE(nothing.nearest_point({0, 0, 0}));
+    CHECK_FALSE(nothing.first_hit({0, 0, 0}, {0, 0, 1}));
+    CHECK(nothing.winding_number({0, 0, 0}) == 0);
+    bvh const tree(make_solid(tafoni_test::unit_box()));
+    CHECK_FALSE(tree.nearest_point({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
+    CHECK_FALSE(tree.nearest_point({1e300, 0, 0}));
+    CHECK_FALSE(tree.first_hit({0.5, 0.5, 0.5}, {0, 0, 0}));
 }

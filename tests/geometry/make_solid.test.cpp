@@ -290,7 +290,7 @@ TEST_CASE("M13: indices out of range are named with face, corner, value and limi
         CHECK(r.code == errc::index_out_of_range);
         CHECK(r.place.kind == entity::face);
         CHECK(r.place.index == 2);
-        CHECK(r.place.limit == 4);
+        CHECK(r.place.limit == 3);
         CHECK(contains(r.text, "corner 1 of face 2 names vertex " + std::to_string(bad) + ", there are 4"));
     }
 }

@@ -10,9 +10,13 @@
 #include <tafoni/geometry/winding_number.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tafoni {
@@ -33,11 +37,13 @@ public:
     bvh() = default;
 
     /// Splits at the median along the longest side of the box of the centres; ties by index.
-    /// \throws invalid_input  size_overflow beyond 32-bit indices. O(n log n).
-    bvh(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles)
-        : order_(triangles.size()), corners_(triangles.size()) {
+    /// \throws invalid_input  size_overflow beyond 32-bit indices, index_out_of_range, non_finite_vertex. O(n log n).
+    bvh(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
         std::size_t const n = triangles.size();
         detail::require_indexable("bvh", n);
+        require_sound(positions, triangles);
+        order_.resize(n);
+        corners_.resize(n);
         if (n == 0) return;
         while (leaves_ * 4 < n) leaves_ *= 2;
         std::vector<vec3> centres(n);
@@ -52,37 +58,32 @@ public:
         }
         for (std::size_t leaf = 0; leaf < leaves_; ++leaf) std::sort(at(leaf), at(leaf + 1));
         nodes_.resize(2 * leaves_);
-        refit(positions, triangles);
+        place(positions, triangles);
     }
 
     explicit bvh(solid const& s) : bvh(s.positions, s.triangles) {}
 
-    /// Follows moved vertices; the triangles must be those of the constructor. O(n).
+    /// Follows moved vertices; the triangles must be those of the constructor.
+    /// \throws invalid_input  attribute_length where their number differs, and as the constructor; the tree is then
+    ///   as it was. O(n).
     void refit(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
-        TAFONI_ASSERT(triangles.size() == order_.size(), "refit keeps the number of triangles");
+        if (triangles.size() != order_.size()) {
+            detail::fail<invalid_input>(errc::attribute_length,
+                                        "bvh: refit got " + std::to_string(triangles.size()) + " triangles, the tree has " +
+                                            std::to_string(order_.size()),
+                                        {.kind = entity::face,
+                                         .value = static_cast<double>(triangles.size()),
+                                         .limit = static_cast<double>(order_.size())});
+        }
+        require_sound(positions, triangles);
         if (order_.empty()) return;
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            auto const& t = triangles[order_[i]];
-            corners_[i] = {positions[t[0]], positions[t[1]], positions[t[2]]};
-        }
-        for (std::size_t leaf = 0; leaf < leaves_; ++leaf) {
-            box3 box;
-            for (std::size_t i = begin(leaf); i < begin(leaf + 1); ++i) {
-                for (vec3 const& p : corners_[i]) box.include(p);
-            }
-            nodes_[leaves_ + leaf] = box;
-        }
-        for (std::size_t node = leaves_; --node > 0;) {
-            nodes_[node] = nodes_[2 * node];
-            nodes_[node].include(nodes_[2 * node + 1].lo);
-            nodes_[node].include(nodes_[2 * node + 1].hi);
-        }
+        place(positions, triangles);
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }
 
     /// The nearest point of the triangles, of the lowest triangle on a tie; none when there are no
-    /// triangles. O(log n) where triangles are spread evenly.
+    /// triangles, or none whose squared distance is finite. O(log n) where triangles are spread evenly.
     [[nodiscard]] std::optional<hit> nearest_point(vec3 const& p) const {
         if (order_.empty()) return std::nullopt;
         hit best;
@@ -97,6 +98,7 @@ public:
                      best = {triangle, q, 0};
                  }
              });
+        if (!(limit < std::numeric_limits<double>::infinity())) return std::nullopt;
         best.distance = std::sqrt(limit);
         return best;
     }
@@ -146,6 +148,47 @@ public:
     }
 
 private:
+    static void require_sound(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            for (std::uint32_t const v : triangles[t]) {
+                if (v >= positions.size()) {
+                    detail::fail<invalid_input>(errc::index_out_of_range,
+                                                "bvh: triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
+                                                    ", there are " + std::to_string(positions.size()),
+                                                {.kind = entity::face,
+                                                 .index = t,
+                                                 .value = static_cast<double>(v),
+                                                 .limit = static_cast<double>(positions.size()) - 1});
+                }
+                if (!is_finite(positions[v])) {
+                    detail::fail<invalid_input>(errc::non_finite_vertex,
+                                                "bvh: vertex " + std::to_string(v) + " is not finite",
+                                                {.kind = entity::vertex, .index = v});
+                }
+            }
+        }
+    }
+
+    /// Copies the corners and boxes them from the leaves up.
+    void place(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            auto const& t = triangles[order_[i]];
+            corners_[i] = {positions[t[0]], positions[t[1]], positions[t[2]]};
+        }
+        for (std::size_t leaf = 0; leaf < leaves_; ++leaf) {
+            box3 box;
+            for (std::size_t i = begin(leaf); i < begin(leaf + 1); ++i) {
+                for (vec3 const& p : corners_[i]) box.include(p);
+            }
+            nodes_[leaves_ + leaf] = box;
+        }
+        for (std::size_t node = leaves_; --node > 0;) {
+            nodes_[node] = nodes_[2 * node];
+            nodes_[node].include(nodes_[2 * node + 1].lo);
+            nodes_[node].include(nodes_[2 * node + 1].hi);
+        }
+    }
+
     /// Triangles of leaf l are [begin(l), begin(l + 1)) in `order_`.
     [[nodiscard]] std::size_t begin(std::size_t leaf) const noexcept { return leaf * order_.size() / leaves_; }
     [[nodiscard]] std::vector<std::uint32_t>::iterator at(std::size_t leaf) noexcept {

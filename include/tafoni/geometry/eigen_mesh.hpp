@@ -24,8 +24,10 @@ struct eigen_mesh {
     F const& faces;
 };
 
+namespace detail {
+
 template <class V, class F>
-struct mesh_access<eigen_mesh<V, F>> {
+struct eigen_rows {
     using mesh = eigen_mesh<V, F>;
 
     static std::size_t vertex_count(mesh const& m) { return static_cast<std::size_t>(m.vertices.rows()); }
@@ -35,36 +37,30 @@ struct mesh_access<eigen_mesh<V, F>> {
                     static_cast<double>(m.vertices(r, 2))};
     }
     static std::size_t face_count(mesh const& m) { return static_cast<std::size_t>(m.faces.rows()); }
-    static std::size_t face_size(mesh const& m, std::size_t f) {
+    static std::uint64_t corner(mesh const& m, std::size_t f, std::size_t k) {
+        return static_cast<std::uint64_t>(m.faces(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)));
+    }
+};
+
+}  // namespace detail
+
+template <class V, class F>
+struct mesh_access<eigen_mesh<V, F>> : detail::eigen_rows<V, F> {
+    static std::size_t face_size(eigen_mesh<V, F> const& m, std::size_t f) {
         auto n = m.faces.cols();
         if constexpr (std::is_signed_v<typename F::Scalar>) {
             while (n > 3 && m.faces(static_cast<Eigen::Index>(f), n - 1) < 0) --n;
         }
         return static_cast<std::size_t>(n);
     }
-    static std::uint64_t corner(mesh const& m, std::size_t f, std::size_t k) {
-        return static_cast<std::uint64_t>(m.faces(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)));
-    }
 };
 
 /// As above, with exactly three columns at compile time.
 template <class V, class F>
     requires(F::ColsAtCompileTime == 3)
-struct mesh_access<eigen_mesh<V, F>> {
-    using mesh = eigen_mesh<V, F>;
+struct mesh_access<eigen_mesh<V, F>> : detail::eigen_rows<V, F> {
     static constexpr std::size_t corners_per_face = 3;
-
-    static std::size_t vertex_count(mesh const& m) { return static_cast<std::size_t>(m.vertices.rows()); }
-    static vec3 position(mesh const& m, std::size_t v) {
-        auto const r = static_cast<Eigen::Index>(v);
-        return vec3{static_cast<double>(m.vertices(r, 0)), static_cast<double>(m.vertices(r, 1)),
-                    static_cast<double>(m.vertices(r, 2))};
-    }
-    static std::size_t face_count(mesh const& m) { return static_cast<std::size_t>(m.faces.rows()); }
-    static std::size_t face_size(mesh const&, std::size_t) { return 3; }
-    static std::uint64_t corner(mesh const& m, std::size_t f, std::size_t k) {
-        return static_cast<std::uint64_t>(m.faces(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)));
-    }
+    static std::size_t face_size(eigen_mesh<V, F> const&, std::size_t) { return 3; }
 };
 
 /// A view of V and F, which may be matrices, maps, blocks or refs with entries in memory.

@@ -77,7 +77,7 @@ private:
     if (!is_finite(box.lo) || !is_finite(box.hi) || !is_finite(size) || box.empty() || !(longest > 0)) {
         detail::fail<invalid_input>(errc::bad_box,
                                     "make_lattice_frame: the box must be finite and of positive size, got a longest side of " +
-                                        std::to_string(longest),
+                                        detail::number_text(longest),
                                     {.value = longest});
     }
     int e = 0;

@@ -28,15 +28,23 @@ struct span_mesh {
     std::span<std::size_t const> offsets{};  ///< faces + 1 entries; empty for triangles
 };
 
-template <class Scalar, class Index, bool Triangles>
-struct mesh_access<span_mesh<Scalar, Index, Triangles>> {
-    using mesh = span_mesh<Scalar, Index, Triangles>;
+namespace detail {
 
-    static std::size_t vertex_count(mesh const& m) { return m.coordinates.size() / 3; }
-    static vec3 position(mesh const& m, std::size_t v) {
+template <class Mesh>
+struct span_vertices {
+    static std::size_t vertex_count(Mesh const& m) { return m.coordinates.size() / 3; }
+    static vec3 position(Mesh const& m, std::size_t v) {
         auto const p = m.coordinates.subspan(3 * v, 3);
         return vec3{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
     }
+};
+
+}  // namespace detail
+
+template <class Scalar, class Index, bool Triangles>
+struct mesh_access<span_mesh<Scalar, Index, Triangles>> : detail::span_vertices<span_mesh<Scalar, Index, Triangles>> {
+    using mesh = span_mesh<Scalar, Index, Triangles>;
+
     static std::size_t face_count(mesh const& m) { return m.offsets.empty() ? 0 : m.offsets.size() - 1; }
     static std::size_t face_size(mesh const& m, std::size_t f) { return m.offsets[f + 1] - m.offsets[f]; }
     static std::uint64_t corner(mesh const& m, std::size_t f, std::size_t k) {
@@ -45,15 +53,10 @@ struct mesh_access<span_mesh<Scalar, Index, Triangles>> {
 };
 
 template <class Scalar, class Index>
-struct mesh_access<span_mesh<Scalar, Index, true>> {
+struct mesh_access<span_mesh<Scalar, Index, true>> : detail::span_vertices<span_mesh<Scalar, Index, true>> {
     using mesh = span_mesh<Scalar, Index, true>;
     static constexpr std::size_t corners_per_face = 3;
 
-    static std::size_t vertex_count(mesh const& m) { return m.coordinates.size() / 3; }
-    static vec3 position(mesh const& m, std::size_t v) {
-        auto const p = m.coordinates.subspan(3 * v, 3);
-        return vec3{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-    }
     static std::size_t face_count(mesh const& m) { return m.corners.size() / 3; }
     static std::size_t face_size(mesh const&, std::size_t) { return 3; }
     static std::uint64_t corner(mesh const& m, std::size_t f, std::size_t k) {

@@ -60,7 +60,7 @@ inline void require_valid_grid(height_grid const& g) {
         if ((!g.missing.empty() && g.missing[i] != 0) || std::isfinite(g.heights[i])) continue;
         fail<invalid_input>(errc::non_finite_vertex,
                             std::string(who) + ": the height in row " + std::to_string(i / g.columns) + ", column " +
-                                std::to_string(i % g.columns) + " is " + std::to_string(g.heights[i]),
+                                std::to_string(i % g.columns) + " is " + number_text(g.heights[i]),
                             {.kind = entity::vertex, .index = i, .value = g.heights[i]});
     }
 }

@@ -23,7 +23,7 @@ void require_finite_vertices(char const* who, M const& mesh) {
             if (std::isfinite(p[axis])) continue;
             fail<invalid_input>(errc::non_finite_vertex,
                                 std::string(who) + ": vertex " + std::to_string(v) + " has " + "xyz"[axis] + " = " +
-                                    std::to_string(p[axis]),
+                                    number_text(p[axis]),
                                 {.kind = entity::vertex, .index = v, .value = p[axis]});
         }
     }
@@ -57,7 +57,7 @@ template <polygon_mesh M>
                                     {.kind = entity::face,
                                      .index = f,
                                      .value = static_cast<double>(v),
-                                     .limit = static_cast<double>(vertices)});
+                                     .limit = static_cast<double>(vertices) - 1});
             }
             copy.corners.push_back(static_cast<std::uint32_t>(v));
         }

@@ -7,10 +7,16 @@
 #include <tafoni/geometry/detail/shell_nesting.hpp>
 #include <tafoni/geometry/triangulate.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
 namespace tafoni::detail {
 
 /// The faces of each shell that has to be turned: of negative volume and in no other, or inside such a
-/// one. `across` pairs sides, the largest number for none. O(triangles) per shell.
+/// one. `across` pairs sides, the largest number for none. O(triangles); where a shell faces inwards also O(shells + triangles
+/// of the shells whose boxes hold it) per shell.
 [[nodiscard]] inline std::vector<std::vector<std::uint32_t>> inward_shells(indexed_mesh const& mesh,
                                                                           std::vector<std::uint32_t> const& across) {
     constexpr std::uint32_t none = face_index::none;
@@ -68,6 +74,17 @@ namespace tafoni::detail {
             sh.six_size += term.size;
         }
     }
+    auto const is_inward = [](shell const& sh) { return sh.six_volume < -volume_noise * sh.six_size; };
+    if (std::none_of(shells.begin(), shells.end(), is_inward)) return {};
+    std::vector<double> diagonal(shells.size());
+    std::vector<std::uint32_t> by_size(shells.size());
+    for (std::uint32_t i = 0; i < shells.size(); ++i) {
+        diagonal[i] = shells[i].bounds.diagonal();
+        by_size[i] = i;
+    }
+    std::sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return diagonal[a] != diagonal[b] ? diagonal[a] > diagonal[b] : a < b;
+    });
     auto const contains = [](shell const& outer, vec3 const& p) {
         if (!outer.bounds.contains(p)) return false;
         int around = 0;
@@ -78,15 +95,13 @@ namespace tafoni::detail {
     for (std::size_t i = 0; i < shells.size(); ++i) {
         // A shell goes with the outermost one around it, so that cavities stay cavities.
         std::size_t outermost = i;
-        double largest = shells[i].bounds.diagonal();
-        for (std::size_t j = 0; j < shells.size(); ++j) {
-            double const d = shells[j].bounds.diagonal();
-            if (j != i && d > largest && contains(shells[j], shells[i].lowest)) {
-                outermost = j;
-                largest = d;
-            }
+        for (std::uint32_t const j : by_size) {
+            if (!(diagonal[j] > diagonal[i])) break;
+            if (!contains(shells[j], shells[i].lowest)) continue;
+            outermost = j;
+            break;
         }
-        if (!(shells[outermost].six_volume < -volume_noise * shells[outermost].six_size)) continue;
+        if (!is_inward(shells[outermost])) continue;
         turned.push_back(shells[i].faces);
     }
     return turned;
