@@ -193,6 +193,7 @@ TEST_CASE("the OBJ writer refuses NaN, dangling corners and arrays of wrong leng
     CHECK(code({.normals = {vec3{0, 0, 1}}, .corner_normals = {0, 0}}) == errc::attribute_length);
     CHECK(code({.groups = {{"a", 1}}}) == errc::bad_parameter);
     CHECK(code({.groups = {{"a\nb", 0}}}) == errc::bad_parameter);
+    CHECK(code({.material_libraries = {"rock.mtl", "a\nv 0 0 0"}}) == errc::bad_parameter);
     mesh.corners[1] = 4;
     CHECK(code() == errc::index_out_of_range);
     mesh.corners[1] = 1;

@@ -278,3 +278,17 @@ TEST_CASE("faces of more than 255 corners get a wider list length") {
     CHECK(ply(encode_ply(mesh)).mesh == mesh);
     CHECK(ply(encode_ply(mesh, {}, {.encoding = ply_encoding::ascii})).mesh == mesh);
 }
+
+TEST_CASE("a zero keeps its sign along the axes that a recorded origin does not move") {
+    indexed_mesh mesh;
+    for (vec3 const& v : {vec3{100, -0.0, 0}, vec3{101, 0, -0.0}, vec3{100, 1, -0.0}}) mesh.add_vertex(v);
+    mesh.add_face({0, 1, 2});
+    write_ply_options const options{.coordinates = coordinate_type::float32, .origin = {100, 0, 0}};
+    std::string const once = encode_ply(mesh, {}, options);
+    mesh_file const back = read_ply(once, "memory");
+    CHECK(std::signbit(back.mesh.positions[0][1]));
+    CHECK_FALSE(std::signbit(back.mesh.positions[1][1]));
+    CHECK(std::signbit(back.mesh.positions[2][2]));
+    CHECK(back.mesh.positions[1][0] == 101);
+    CHECK(encode_ply(back.mesh, {}, options) == once);
+}

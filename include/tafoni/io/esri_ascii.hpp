@@ -82,7 +82,7 @@ private:
     double cell(key k) const {
         if (place_[k] == nullptr) source_.fail_at(at_, errc::bad_syntax, "expected cellsize, or dx and dy");
         if (!(value_[k] > 0)) {
-            source_.fail_at(place_[k], errc::bad_number, "expected a cell size above 0, got " + std::to_string(value_[k]),
+            source_.fail_at(place_[k], errc::bad_number, "expected a cell size above 0, got " + number_text(value_[k]),
                             {.value = value_[k], .limit = 0});
         }
         return value_[k];

@@ -7,10 +7,14 @@
 #include <tafoni/io/detail/ply_header.hpp>
 
 #include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace tafoni {
 namespace detail {
@@ -316,7 +320,10 @@ private:
         out_.origin = header_.origin;
         if (out_.origin == vec3{0, 0, 0}) return;
         for (vec3& p : out_.mesh.positions) {
-            p = vec3{p[0] + out_.origin[0], p[1] + out_.origin[1], p[2] + out_.origin[2]};
+            for (int axis = 0; axis < 3; ++axis) {
+                // Adding zero would turn -0.0 into 0.0, and the file would not come back as it was.
+                if (out_.origin[axis] != 0) p[axis] += out_.origin[axis];
+            }
             if (!is_finite(p)) fail_here(errc::non_finite_vertex, "a coordinate overflows when the origin is added");
         }
     }

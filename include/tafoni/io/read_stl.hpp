@@ -10,6 +10,7 @@
 #include <tafoni/io/detail/source_text.hpp>
 #include <tafoni/io/mesh_file.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>

@@ -58,6 +58,11 @@ template <polygon_mesh M>
     detail::require_groups(who, attributes.objects, faces, "object");
     detail::require_groups(who, attributes.groups, faces, "group");
     detail::require_groups(who, attributes.materials, faces, "material");
+    for (std::string const& library : attributes.material_libraries) {
+        if (library.find_first_of("\n\r") == std::string::npos) continue;
+        detail::fail<invalid_input>(errc::bad_parameter, std::string(who) + ": a material library must be named in one line",
+                                    {.kind = entity::attribute});
+    }
     for (std::size_t k = 0; k < attributes.normals.size(); ++k) {
         detail::require_finite_vertex("write_obj (normal)", attributes.normals[k], k);
     }

@@ -18,7 +18,7 @@ inline void require_finite_vertex(char const* who, vec3 const& p, std::size_t ve
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(p[axis])) {
             fail<invalid_input>(errc::non_finite_vertex,
-                                std::string(who) + ": expected finite coordinates, got " + std::to_string(p[axis]) +
+                                std::string(who) + ": expected finite coordinates, got " + number_text(p[axis]) +
                                     " in " + "xyz"[axis] + " of vertex " + std::to_string(vertex),
                                 {.kind = entity::vertex, .index = vertex, .value = p[axis]});
         }
@@ -30,7 +30,7 @@ inline void require_float_vertex(char const* who, vec3 const& p, vec3 const& ori
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(static_cast<float>(p[axis] - origin[axis]))) {
             fail<io_error>(errc::format_limit,
-                           std::string(who) + ": coordinate " + std::to_string(p[axis]) + " of vertex " +
+                           std::string(who) + ": coordinate " + number_text(p[axis]) + " of vertex " +
                                std::to_string(vertex) + " does not fit float",
                            {.kind = entity::vertex, .index = vertex, .value = p[axis], .limit = 3.4028234663852886e38});
         }
@@ -61,7 +61,7 @@ inline void require_channels(char const* who, std::vector<mesh_channel> const& c
             bool const fits = is_integer(c.type)
                                   ? v >= range_of(c.type).lo && v <= range_of(c.type).hi && v == std::floor(v)
                                   : !std::isfinite(v) || std::isfinite(static_cast<float>(v));
-            if (!fits) refuse(errc::bad_parameter, c, "holds " + std::to_string(v) + ", which its type cannot", v);
+            if (!fits) refuse(errc::bad_parameter, c, "holds " + number_text(v) + ", which its type cannot", v);
         }
     }
 }
