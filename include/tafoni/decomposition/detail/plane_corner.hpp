@@ -11,6 +11,12 @@
 
 namespace tafoni::detail {
 
+/// The box in which cells live, lattice coordinates.
+struct lattice_box {
+    ivec3 lo{};
+    ivec3 hi{};
+};
+
 /// A point and a bound on its distance from the true one, relative to a site.
 struct vertex_estimate {
     double x = 0;

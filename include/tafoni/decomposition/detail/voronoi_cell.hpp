@@ -3,6 +3,7 @@
 #ifndef TAFONI_DECOMPOSITION_DETAIL_VORONOI_CELL_HPP
 #define TAFONI_DECOMPOSITION_DETAIL_VORONOI_CELL_HPP
 
+#include <tafoni/decomposition/detail/cell_lanes.hpp>
 #include <tafoni/decomposition/detail/plane_corner.hpp>
 #include <tafoni/geometry/predicates.hpp>
 
@@ -16,20 +17,11 @@
 
 namespace tafoni::detail {
 
-/// The box in which cells live, lattice coordinates.
-struct lattice_box {
-    ivec3 lo{};
-    ivec3 hi{};
-};
-
 #if defined(__AVX__)
 inline namespace avx {
-inline constexpr std::size_t cell_lanes = 4;
 #else
 inline namespace baseline {
-inline constexpr std::size_t cell_lanes = 2;
 #endif
-using lanes = double __attribute__((vector_size(8 * cell_lanes)));
 
 /// The convex cell of one site, as its dual: a vertex is the triple of planes (a, b, c) that meet there,
 /// with det(n_a, n_b, n_c) > 0, so the vertex across its edge a -> b holds b -> a [Ray et al. 2018].
@@ -112,7 +104,6 @@ public:
     [[nodiscard]] bool alive(std::uint32_t p) const noexcept { return degree_[p] != 0; }
     [[nodiscard]] std::uint32_t degree(std::uint32_t p) const noexcept { return degree_[p]; }
     [[nodiscard]] std::uint32_t id_of(std::uint32_t p) const noexcept { return id_[p]; }
-    [[nodiscard]] exact::plane const& plane_of(std::uint32_t p) const noexcept { return plane_[p]; }
     [[nodiscard]] triple const& vertex(std::uint32_t v) const noexcept { return triple_[v]; }
     [[nodiscard]] exact::site const& site() const noexcept { return site_; }
 
@@ -128,8 +119,8 @@ public:
                 lanes const gap = most > zero ? most : zero;
                 return gap * gap;
             };
-            lanes const spare = 1.000001 * load(r2_.data() + v) - gap2(lo[0], hi[0], load(x_.data() + v)) -
-                                gap2(lo[1], hi[1], load(y_.data() + v)) - gap2(lo[2], hi[2], load(z_.data() + v));
+            lanes const spare = 1.000001 * load_lanes(r2_.data() + v) - gap2(lo[0], hi[0], load_lanes(x_.data() + v)) -
+                                gap2(lo[1], hi[1], load_lanes(y_.data() + v)) - gap2(lo[2], hi[2], load_lanes(z_.data() + v));
             reached = spare > reached ? spare : reached;
         }
         for (std::size_t k = 0; k < cell_lanes; ++k) {
@@ -233,7 +224,7 @@ private:
     void update_radius() noexcept {
         lanes most{};
         for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
-            lanes const value = load(r2_.data() + v);
+            lanes const value = load_lanes(r2_.data() + v);
             most = value > most ? value : most;
         }
         double r = most[0];
@@ -250,22 +241,15 @@ private:
         auto* s = side_.data();
         lanes most = lanes{} - 1;
         for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
-            lanes const value = load(x + v) * nx + load(y + v) * ny + load(z + v) * nz - h;
-            store(s + v, value);
-            lanes const top = value + (load(e + v) * n1 + floor);
+            lanes const value = load_lanes(x + v) * nx + load_lanes(y + v) * ny + load_lanes(z + v) * nz - h;
+            store_lanes(s + v, value);
+            lanes const top = value + (load_lanes(e + v) * n1 + floor);
             most = top > most ? top : most;
         }
         bool any = false;
         for (std::size_t k = 0; k < cell_lanes; ++k) any = any || most[k] > 0;
         return any;
     }
-
-    static lanes load(double const* p) noexcept {
-        lanes v;
-        __builtin_memcpy(&v, p, sizeof v);
-        return v;
-    }
-    static void store(double* p, lanes v) noexcept { __builtin_memcpy(p, &v, sizeof v); }
 
     [[nodiscard]] bool beyond(std::uint32_t v, exact::site const& other) const noexcept {
         triple const& t = triple_[v];
