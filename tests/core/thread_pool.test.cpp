@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
@@ -58,6 +59,28 @@ TEST_CASE("the exception of the lowest throwing block reaches the caller", "[thr
     int after = 0;
     pool.for_blocks(1, 1, [&](std::size_t, std::size_t) { ++after; });
     CHECK(after == 1);
+}
+
+TEST_CASE("the lowest block wins whichever throws first", "[threads]") {
+    thread_pool const pool(2);
+    if (pool.thread_count() < 2) return;
+    for (int const late : {0, 1}) {
+        std::atomic<int> started{0};
+        std::string caught;
+        try {
+            pool.for_blocks(2, 1, [&](std::size_t b, std::size_t) {
+                ++started;
+                // Both run before either throws; bounded, so that a pool that never shares fails below and does not hang.
+                for (int tries = 0; started < 2 && tries < 20000; ++tries) std::this_thread::sleep_for(std::chrono::microseconds(100));
+                if (static_cast<int>(b) == late) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                throw std::runtime_error(std::to_string(b));
+            });
+        } catch (std::runtime_error const& e) {
+            caught = e.what();
+        }
+        CHECK(started == 2);
+        CHECK(caught == "0");
+    }
 }
 
 TEST_CASE("several threads may share one pool", "[threads]") {
