@@ -6,6 +6,12 @@
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/geometry/repair_mesh.hpp>
 
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace tafoni {
 
 /// A solid made of a mended mesh.
@@ -19,15 +25,17 @@ struct repaired_solid {
 template <polygon_mesh M>
 [[nodiscard]] repaired_solid repair_solid(M const& mesh, repair_options const& options,
                                           make_solid_options const& solid_options = {}) {
-    repaired_mesh mended = repair_mesh(mesh, options);
     std::size_t const faces = mesh_access<M>::face_count(mesh);
     if (!solid_options.artificial.empty() && solid_options.artificial.size() != faces) {
         detail::fail<invalid_input>(errc::attribute_length,
                                     "repair_solid: artificial has " +
                                         std::to_string(solid_options.artificial.size()) + " entries for " +
                                         std::to_string(faces) + " faces",
-                                    {.kind = entity::attribute});
+                                    {.kind = entity::attribute,
+                                     .value = static_cast<double>(solid_options.artificial.size()),
+                                     .limit = static_cast<double>(faces)});
     }
+    repaired_mesh mended = repair_mesh(mesh, options);
     repaired_solid r{.body = make_solid(mended.mesh), .report = std::move(mended.report)};
     std::size_t filled = 0;
     std::vector<std::uint32_t> name(mended.face_of);
