@@ -49,7 +49,6 @@ std::vector<vec3> graded(spec& s, solid const& body, std::size_t count, std::uin
 
 std::vector<vec3> choose_sites(std::string const& text, solid const& body, std::size_t count, double jitter,
                                vec3 const& up, std::uint64_t seed) {
-    if (std::error_code ignored; std::filesystem::exists(text, ignored)) return given_sites{load_points(text)}(body, seed);
     spec s = spec::parse("--sites", text);
     std::vector<vec3> sites;
     if (s.name() == "random") {
@@ -87,6 +86,8 @@ std::vector<vec3> choose_sites(std::string const& text, solid const& body, std::
         std::size_t const there = other.empty() ? body.positions.size() : pattern.vertices.size();
         pattern.count = std::min(count, there);
         sites = pattern(body, seed);
+    } else if (std::error_code ignored; std::filesystem::is_regular_file(text, ignored)) {
+        sites = given_sites{load_points(text)}(body, seed);
     } else {
         s.fail("no such file; known: random, surface, grid, hex, slabs, poisson, vertices");
     }
