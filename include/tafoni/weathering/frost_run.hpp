@@ -142,6 +142,7 @@ public:
         }
         auto former_cells = core_.state.cells;
         auto former_marks = core_.state.marks;
+        auto former_states = core_.states;
         core_.dirty = true;
         if (!core_.has_history()) std::fill(core_.states.begin(), core_.states.end(), link_state::bonded);
         for (cell_index const c : cells) core_.state.cells[c.value] = core_.state.marks[c.value] = as;
@@ -150,6 +151,7 @@ public:
         } catch (...) {  // out of memory: the next call rebuilds
             core_.state.cells.swap(former_cells);
             core_.state.marks.swap(former_marks);
+            core_.states.swap(former_states);
             throw;
         }
     }

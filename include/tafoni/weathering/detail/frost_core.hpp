@@ -115,18 +115,21 @@ public:
         dirty = true;
         scratch_.clear();
         Network const& network = table.network();
-        for (std::size_t i = 0; i < states.size(); ++i) {
+        // On a copy: what history alone tells must outlast a rebuild that runs out of memory.
+        std::vector<link_state> next = states;
+        for (std::size_t i = 0; i < next.size(); ++i) {
             link_record const& r = table[link_index{i}];
             if (!r.cells[1].valid() || is_air(r.cells[0]) || is_air(r.cells[1])) continue;
-            states[i] = r.life > 0 ? link_state::bonded : link_state::broken;
+            next[i] = r.life > 0 ? link_state::bonded : link_state::broken;
         }
-        std::vector<link_state> const former = states;
-        exposure_memory_.emplace(exposure.start(network, state.cells, states));
+        std::vector<link_state> const former = next;
+        exposure_memory_.emplace(exposure.start(network, state.cells, next));
         if (has_history()) {  // what was laid open stays open, also by policies that could not find it again
-            for (std::size_t i = 0; i < states.size(); ++i) {
-                if (states[i] == link_state::pocket && former[i] == link_state::skin) states[i] = link_state::skin;
+            for (std::size_t i = 0; i < next.size(); ++i) {
+                if (next[i] == link_state::pocket && former[i] == link_state::skin) next[i] = link_state::skin;
             }
         }
+        states.swap(next);
         skin = entry_tree(table.size());
         for (std::size_t i = 0; i < table.size(); ++i) {
             if (network.has_link(link_index{i})) refresh(link_index{i});
