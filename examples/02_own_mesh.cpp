@@ -1,5 +1,5 @@
 // Three ways to hand over a mesh that is not tafoni's: your own type, Eigen matrices, flat arrays.
-// Nothing is copied until make_solid has checked it.
+// make_solid reads them where they lie, checks them, and returns a solid that owns its data.
 #include <tafoni/geometry/eigen_mesh.hpp>
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/geometry/span_mesh.hpp>

@@ -101,6 +101,23 @@ struct edge_faults {
     return r;
 }
 
+/// For each side of an edge of two sides the other one, and whether both run the same way.
+struct side_mates {
+    std::vector<std::uint32_t> mate;     ///< the largest number for sides of other edges
+    std::vector<std::uint8_t> same_way;  ///< 1 where one of the two faces has to be turned
+
+    side_mates(edge_table const& edges, std::size_t sides_count)
+        : mate(sides_count, std::numeric_limits<std::uint32_t>::max()), same_way(sides_count, 0) {
+        edges.for_each_edge([&](std::uint32_t, std::span<edge_table::side const> sides) {
+            if (sides.size() != 2) return;
+            mate[sides[0].corner] = sides[1].corner;
+            mate[sides[1].corner] = sides[0].corner;
+            bool const same = edges.forward(sides[0]) == edges.forward(sides[1]);
+            same_way[sides[0].corner] = same_way[sides[1].corner] = same ? 1 : 0;
+        });
+    }
+};
+
 /// True when no choice of directions makes the sides of every two-sided edge run against each other.
 /// Faces are walked in order with an explicit stack. O(sides).
 [[nodiscard]] inline bool cannot_be_oriented(indexed_mesh const& mesh, edge_table const& edges) {
@@ -108,15 +125,7 @@ struct edge_faults {
         std::uint32_t face;
         std::uint8_t turned;
     };
-    std::vector<std::uint32_t> mate(mesh.corners.size(), std::numeric_limits<std::uint32_t>::max());
-    std::vector<std::uint8_t> against(mesh.corners.size(), 0);
-    edges.for_each_edge([&](std::uint32_t, std::span<edge_table::side const> sides) {
-        if (sides.size() != 2) return;
-        std::uint8_t const flips = edges.forward(sides[0]) == edges.forward(sides[1]) ? 1 : 0;
-        mate[sides[0].corner] = sides[1].corner;
-        mate[sides[1].corner] = sides[0].corner;
-        against[sides[0].corner] = against[sides[1].corner] = flips;
-    });
+    side_mates const mates(edges, mesh.corners.size());
     std::vector<std::uint8_t> state(mesh.face_count(), 2);
     std::vector<step> stack;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -127,9 +136,9 @@ struct edge_faults {
             step const s = stack.back();
             stack.pop_back();
             for (std::size_t c = mesh.offsets[s.face]; c < mesh.offsets[s.face + 1]; ++c) {
-                if (mate[c] == std::numeric_limits<std::uint32_t>::max()) continue;
-                std::uint32_t const g = edges.face_of(mate[c]);
-                std::uint8_t const turned = static_cast<std::uint8_t>(s.turned ^ against[c]);
+                if (mates.mate[c] == std::numeric_limits<std::uint32_t>::max()) continue;
+                std::uint32_t const g = edges.face_of(mates.mate[c]);
+                std::uint8_t const turned = static_cast<std::uint8_t>(s.turned ^ mates.same_way[c]);
                 if (state[g] == 2) {
                     state[g] = turned;
                     stack.push_back({g, turned});

@@ -104,15 +104,7 @@ public:
     /// cannot be oriented stays as it is. O(sides).
     void orient() {
         edge_table const edges(mesh);
-        std::vector<std::uint32_t> mate(mesh.corners.size(), none);
-        std::vector<std::uint8_t> against(mesh.corners.size(), 0);
-        edges.for_each_edge([&](std::uint32_t, std::span<edge_table::side const> sides) {
-            if (sides.size() != 2) return;
-            mate[sides[0].corner] = sides[1].corner;
-            mate[sides[1].corner] = sides[0].corner;
-            against[sides[0].corner] = against[sides[1].corner] =
-                edges.forward(sides[0]) == edges.forward(sides[1]) ? 1 : 0;
-        });
+        side_mates const mates(edges, mesh.corners.size());
         std::vector<std::uint8_t> state(mesh.face_count(), 2);
         std::vector<std::uint8_t> turn(mesh.face_count(), 0);
         std::vector<std::uint32_t> part;
@@ -125,9 +117,9 @@ public:
             for (std::size_t i = 0; i < part.size(); ++i) {
                 turned += state[part[i]];
                 for (std::size_t c = mesh.offsets[part[i]]; c < mesh.offsets[part[i] + 1]; ++c) {
-                    if (mate[c] == none) continue;
-                    std::uint32_t const g = edges.face_of(mate[c]);
-                    std::uint8_t const wanted = static_cast<std::uint8_t>(state[part[i]] ^ against[c]);
+                    if (mates.mate[c] == none) continue;
+                    std::uint32_t const g = edges.face_of(mates.mate[c]);
+                    std::uint8_t const wanted = static_cast<std::uint8_t>(state[part[i]] ^ mates.same_way[c]);
                     if (state[g] == 2) {
                         state[g] = wanted;
                         part.push_back(g);
