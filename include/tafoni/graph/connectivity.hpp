@@ -58,11 +58,12 @@ public:
     [[nodiscard]] std::size_t cell_count() const noexcept { return flags_.size(); }
     [[nodiscard]] bool is_removed(cell_index c) const noexcept { return (flags_[c.value] & removed) != 0; }
     [[nodiscard]] bool is_core(cell_index c) const noexcept { return (flags_[c.value] & core) != 0; }
-    /// O(bonds of a cell).
+    /// O(1).
     template <link_network Network>
     [[nodiscard]] bool is_bonded(Network const& n, link_index l) const noexcept {
+        if (!bonds_.contains(l.value)) return false;
         auto const ends = n.link_cells(l);
-        return ends[1].valid() && bonds_.contains(l.value, ends[0].value);
+        return !is_removed(ends[0]) && !is_removed(ends[1]);
     }
     /// Only for cells that are not removed.
     [[nodiscard]] std::uint32_t component_of(cell_index c) const noexcept { return label_[c.value]; }
@@ -248,9 +249,9 @@ private:
     void take_out(std::uint32_t c) {
         if ((flags_[c] & removed) != 0) return;
         while (!bonds_.of(c).empty()) {
-            auto const b = bonds_.of(c).back();
-            bonds_.remove(b.link, c, b.other);
-            look(c, b.other);
+            std::uint32_t const other = bonds_.of(c).back();
+            bonds_.remove_any(c, other);
+            look(c, other);
         }
         flags_[c] |= removed;
         std::uint32_t const k = label_[c];

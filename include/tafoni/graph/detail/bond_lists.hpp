@@ -12,84 +12,100 @@
 
 namespace tafoni::detail {
 
-/// A CSR whose entries are removed by swapping with the last of their list. Bonds from a cell to itself are not kept.
+/// A CSR whose entries are removed by swapping with the last of their list, and a bit per link.
+///
+/// A list is its length and then its entries, and entries do not name their link, so that most lists are
+/// one cache line: of several bonds between two cells any entry may go, the bits say which are left.
+/// Bonds from a cell to itself are not kept.
 class bond_lists {
 public:
     bond_lists() = default;
-
-    struct bond {
-        std::uint32_t other;
-        std::uint32_t link;
-    };
 
     /// Keeps the interior links for which `keep(l, cells)` holds. O(cells + links).
     template <class Network, class Keep>
     bond_lists(Network const& n, Keep const& keep) {
         std::size_t const cells = n.cell_count();
-        lists_.reserve(cells);
+        begin_.reserve(cells);
+        bonded_.assign((n.link_count() + 63) / 64, 0);
         for (std::size_t c = 0; c < cells; ++c) {
-            auto const begin = static_cast<std::uint32_t>(bonds_.size());
+            std::size_t const begin = others_.size();
+            others_.push_back(0);
             n.for_each_cell_link(cell_index{c}, [&](link_index l) {
                 auto const ends = n.link_cells(l);
                 if (!ends[1].valid() || ends[0] == ends[1] || !keep(l, ends)) return;
-                bonds_.push_back({ends[0].value == c ? ends[1].value : ends[0].value, l.value});
+                others_.push_back(ends[0].value == c ? ends[1].value : ends[0].value);
+                bonded_[l.value / 64] |= std::uint64_t{1} << (l.value % 64);
             });
-            require_indexable("connectivity: ends of bonds", bonds_.size());
-            lists_.push_back({begin, static_cast<std::uint32_t>(bonds_.size()) - begin});
+            require_indexable("connectivity: ends of bonds", others_.size());
+            others_[begin] = static_cast<std::uint32_t>(others_.size() - begin - 1);
+            begin_.push_back(static_cast<std::uint32_t>(begin));
         }
-        bonds_.shrink_to_fit();
+        others_.shrink_to_fit();
     }
 
-    [[nodiscard]] std::span<bond const> of(std::uint32_t c) const noexcept {
-        return {bonds_.data() + lists_[c].begin, lists_[c].size};
+    /// The cells bonded to c, once for each bond.
+    [[nodiscard]] std::span<std::uint32_t const> of(std::uint32_t c) const noexcept {
+        std::uint32_t const* const list = others_.data() + begin_[c];
+        return {list + 1, *list};
     }
-    [[nodiscard]] bool contains(std::uint32_t link, std::uint32_t c) const noexcept {
-        for (bond const& b : of(c)) {
-            if (b.link == link) return true;
-        }
-        return false;
+    /// Whether nobody has removed the link; its cells may have been cleared since.
+    [[nodiscard]] bool contains(std::uint32_t link) const noexcept {
+        return (bonded_[link / 64] >> (link % 64) & 1) != 0;
     }
-    /// True if the bond was there. O(bonds of the two cells).
+    /// Removes a bond between a and b; true if it was there. O(bonds of the two cells).
     bool remove(std::uint32_t link, std::uint32_t a, std::uint32_t b) noexcept {
-        return remove_end(link, a) && remove_end(link, b);
+        if (!contains(link)) return false;
+        prefetch(b);
+        bonded_[link / 64] &= ~(std::uint64_t{1} << (link % 64));
+        return remove_any(a, b);
     }
-    void clear(std::uint32_t c) noexcept { lists_[c].size = 0; }
-    bool remove_end(std::uint32_t link, std::uint32_t c) noexcept {
-        list& mine = lists_[c];
-        for (std::uint32_t i = mine.begin; i < mine.begin + mine.size; ++i) {
-            if (bonds_[i].link != link) continue;
-            bonds_[i] = bonds_[mine.begin + --mine.size];
-            return true;
-        }
-        return false;
-    }
+    /// Removes any bond between a and b, whichever link it is.
+    bool remove_any(std::uint32_t a, std::uint32_t b) noexcept { return remove_end(a, b) && remove_end(b, a); }
+    void clear(std::uint32_t c) noexcept { others_[begin_[c]] = 0; }
 
     /// Whether a and b are bonded, or both to a third cell; false as well where it is too long to look.
     [[nodiscard]] bool share_neighbor(std::uint32_t a, std::uint32_t b) const noexcept {
         auto const of_a = of(a);
         auto const of_b = of(b);
         if (of_a.size() * of_b.size() > 1024) return false;
-        for (bond const& y : of_b) {
-            if (y.other == a) return true;
-            for (bond const& x : of_a) {
-                if (x.other == y.other) return true;
-            }
+        for (std::uint32_t const y : of_b) {
+            unsigned hit = y == a ? 1U : 0U;
+            for (std::uint32_t const x : of_a) hit |= x == y ? 1U : 0U;
+            if (hit != 0) return true;
         }
         return false;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return lists_.capacity() * sizeof(list) + bonds_.capacity() * sizeof(bond);
+        return begin_.capacity() * 4 + others_.capacity() * 4 + bonded_.capacity() * 8;
     }
 
-private:
-    struct list {
-        std::uint32_t begin;
-        std::uint32_t size;
-    };
+    /// Asks for the list of c, which will be read soon.
+    void prefetch(std::uint32_t c) const noexcept { __builtin_prefetch(others_.data() + begin_[c]); }
 
-    std::vector<list> lists_{};
-    std::vector<bond> bonds_{};
+private:
+
+    /// Takes one entry `other` out of the list of c. Looks at eight at a time: a cell may have very many bonds.
+    bool remove_end(std::uint32_t c, std::uint32_t other) noexcept {
+        std::uint32_t& size = others_[begin_[c]];
+        std::uint32_t* const p = &size + 1;
+        std::uint32_t i = 0;
+        for (; i + 8 <= size; i += 8) {
+            unsigned hit = 0;
+            for (std::uint32_t k = 0; k < 8; ++k) hit |= p[i + k] == other ? 1U : 0U;
+            if (hit != 0) break;
+        }
+        for (; i < size; ++i) {
+            if (p[i] != other) continue;
+            p[i] = p[--size];
+            return true;
+        }
+        return false;
+    }
+
+    std::vector<std::uint32_t> begin_{};   ///< per cell: where its list stands in others_
+    std::vector<std::uint32_t> others_{};
+    std::vector<std::uint64_t> bonded_{};  ///< per link: not removed
 };
 
 }  // namespace tafoni::detail

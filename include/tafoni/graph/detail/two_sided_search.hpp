@@ -64,6 +64,8 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return 4 * mark_.capacity(); }
 
 private:
+    static constexpr std::size_t turn = 64;  ///< neighbours in one turn, so that a huge cell costs the other side no wait
+
     void next_epoch() {
         if (epoch_ >= 0xFFFFFFF0U) {
             std::fill(mark_.begin(), mark_.end(), 0U);
@@ -76,24 +78,34 @@ private:
     void start(std::uint32_t side, std::uint32_t c, Wanted const& wanted) {
         queue_[side].assign(1, c);
         head_[side] = 0;
+        seen_[side] = 0;
         mark_[c] = epoch_ + side;
         found_[side] = wanted(c);
     }
 
-    /// Looks at the neighbours of the next cell of a side; true if one belongs to the other side.
+    /// Looks at some neighbours of the next cell of a side, all unless it has very many; true if one
+    /// belongs to the other side.
     template <class Wanted>
     bool expand(bond_lists const& bonds, std::uint32_t side, Wanted const& wanted) {
         std::uint32_t const mine = epoch_ + side;
         std::uint32_t const theirs = epoch_ + 1 - side;
-        for (auto const& b : bonds.of(queue_[side][head_[side]])) {
-            std::uint32_t& mark = mark_[b.other];
-            if (mark == mine) continue;
-            if (mark == theirs) return true;
-            mark = mine;
-            queue_[side].push_back(b.other);
-            found_[side] = found_[side] || wanted(b.other);
+        auto const all = bonds.of(queue_[side][head_[side]]);
+        std::size_t const end = std::min(all.size(), seen_[side] + turn);
+        std::uint32_t* const marks = mark_.data();
+        for (std::size_t i = seen_[side]; i < end; ++i) {
+            std::uint32_t const other = all[i];
+            if (marks[other] == mine) continue;
+            if (marks[other] == theirs) return true;
+            marks[other] = mine;
+            bonds.prefetch(other);
+            queue_[side].push_back(other);
+            found_[side] = found_[side] || wanted(other);
         }
-        ++head_[side];
+        seen_[side] = end;
+        if (end == all.size()) {
+            seen_[side] = 0;
+            ++head_[side];
+        }
         return false;
     }
 
@@ -101,6 +113,7 @@ private:
     std::uint32_t epoch_ = 0;
     std::array<std::vector<std::uint32_t>, 2> queue_{};
     std::array<std::size_t, 2> head_{};
+    std::array<std::size_t, 2> seen_{};  ///< neighbours of the cell at the head that were looked at
     std::array<bool, 2> found_{};
 };
 
