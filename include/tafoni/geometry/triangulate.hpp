@@ -89,8 +89,10 @@ private:
             following_[i] = i + 1 == n ? 0 : i + 1;
         }
         reflex_.clear();
+        turns_left_.resize(n);
         for (std::uint32_t i = 0; i < n; ++i) {
-            if (turn(previous_[i], i, following_[i]) <= 0) reflex_.push_back(i);
+            note_turn(i);
+            if (turns_left_[i] == 0) reflex_.push_back(i);
         }
         heap_.clear();
         for (std::uint32_t i = 0; i < n; ++i) offer(i);
@@ -103,8 +105,15 @@ private:
         previous_[after] = before;
         alive_[tip] = 0;
         if (start_ == tip) start_ = after;
+        note_turn(before);
+        note_turn(after);
         offer(before);
         offer(after);
+    }
+
+    /// A corner's turn changes with its neighbours only, so it is kept.
+    void note_turn(std::uint32_t corner) noexcept {
+        turns_left_[corner] = turn(previous_[corner], corner, following_[corner]) > 0 ? 1 : 0;
     }
 
     [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const noexcept {
@@ -121,15 +130,24 @@ private:
     [[nodiscard]] bool is_ear(std::uint32_t tip) {
         std::uint32_t const a = previous_[tip];
         std::uint32_t const c = following_[tip];
-        if (turn(a, tip, c) <= 0) return false;
+        if (turns_left_[tip] == 0) return false;
+        // Most corners are nowhere near: the box of the ear tells without an exact sign.
+        auto const range = [&](int axis) {
+            return std::minmax({loop_[a][axis], loop_[tip][axis], loop_[c][axis]});
+        };
+        auto const u = range(axis_u_);
+        auto const v = range(axis_v_);
         // Only corners that turn right or not at all can be the first to reach into an ear.
         std::size_t kept = 0;
         bool blocked = false;
         for (std::size_t i = 0; i < reflex_.size(); ++i) {
             std::uint32_t const p = reflex_[i];
-            if (!alive_[p] || turn(previous_[p], p, following_[p]) > 0) continue;
+            if (!alive_[p] || turns_left_[p] != 0) continue;
             reflex_[kept++] = p;
             if (blocked || p == a || p == tip || p == c) continue;
+            double const p_u = loop_[p][axis_u_];
+            double const p_v = loop_[p][axis_v_];
+            if (p_u < u.first || p_u > u.second || p_v < v.first || p_v > v.second) continue;
             if (same_place(p, a) || same_place(p, tip) || same_place(p, c)) continue;
             blocked = turn(a, tip, p) >= 0 && turn(tip, c, p) >= 0 && turn(c, a, p) >= 0;
         }
@@ -171,7 +189,7 @@ private:
         // The projection cuts itself: take a corner that turns left, else any; the count stays n - 2.
         std::uint32_t tip = start_;
         for (std::size_t i = 0; i < left; ++i, tip = following_[tip]) {
-            if (turn(previous_[tip], tip, following_[tip]) > 0) return tip;
+            if (turns_left_[tip] != 0) return tip;
         }
         return start_;
     }
@@ -184,6 +202,7 @@ private:
     std::vector<std::uint32_t> following_{};
     std::vector<std::uint32_t> reflex_{};
     std::vector<std::uint8_t> alive_{};
+    std::vector<std::uint8_t> turns_left_{};
     std::vector<ear> heap_{};
 };
 
