@@ -55,7 +55,7 @@ paths=$((3 * every))
 
 . "$root/cmake/packages.sh"
 need_packages "$install" g++ cmake ninja-build libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev \
-    nlohmann-json3-dev f3d xvfb xauth imagemagick gnuplot-nox || exit 1
+    nlohmann-json3-dev f3d xvfb xauth imagemagick fonts-dejavu-core gnuplot-nox || exit 1
 
 mkdir -p "$build"
 log=$build/weather.log
@@ -111,7 +111,7 @@ while [ $state -le "$paths" ]; do
         --roughness 0.7 --up "+$(echo $up | tr xyz XYZ)" --quiet
     # The headless renderer lights dimly: its brightest rock is about half as bright as the paper.
     convert "$picture" -fuzz 2% -transparent white -channel RGB -level 4%,62% +channel -background white -flatten \
-        -gravity south -pointsize $((height / 24)) -fill '#333333' -annotate +0+8 "$state paths" "$picture"
+        -gravity south -font DejaVu-Sans -pointsize $((height / 24)) -fill '#333333' -annotate +0+8 "$state paths" "$picture"
     pictures="$pictures $picture"
     state=$((state + every))
 done
