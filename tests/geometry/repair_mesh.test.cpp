@@ -1,3 +1,4 @@
+#include <tafoni/geometry/inspect_mesh.hpp>
 #include <tafoni/geometry/repair_mesh.hpp>
 #include <tafoni/geometry/repair_solid.hpp>
 
@@ -198,6 +199,43 @@ TEST_CASE("two bars that share a whole edge become two shells") {
         }
     }
     CHECK(count == 12);
+}
+
+TEST_CASE("an edge of many faces comes apart, also where faces lie on each other or have no area") {
+    stream draw(5, stage::user, 2);
+    for (int round = 0; round < 50; ++round) {
+        indexed_mesh m;
+        m.add_vertex({0, 0, 0});
+        m.add_vertex({0, 0, 1});
+        for (std::uint32_t f = 0; f < 60; ++f) {
+            double const x = draw.uniform(-1, 1);
+            double const y = draw.uniform(-1, 1);
+            switch (f % 4) {
+                case 0: m.add_vertex({0, 0, 2.0 + f}); break;                        // no area
+                case 1: m.add_vertex({-1, -1 - f * 0x1p-52, 0.5}); break;            // nearly one plane
+                default: m.add_vertex({x, y, 0.5}); break;
+            }
+            if (draw.chance(0.5)) m.add_face({0, 1, f + 2});
+            else m.add_face({1, 0, f + 2});
+        }
+        repaired_mesh const r = repair_mesh(m, {.split_nonmanifold = true});
+        CHECK(r.report.split_edges == 1);
+        inspect_report const now = inspect_mesh(r.mesh);
+        CHECK(now.crowded_edges == 0);
+        CHECK(now.inconsistent_edges == 0);
+        CHECK(now.nonmanifold_vertices == 0);
+        CHECK(r.mesh.face_count() == 60);
+    }
+}
+
+TEST_CASE("what cannot be oriented is turned as a whole or not at all") {
+    indexed_mesh m;  // a strip of five triangles with a half turn
+    for (int v = 0; v < 5; ++v) m.add_vertex({double(v % 3), double(v % 2), double(v)});
+    for (std::uint32_t f = 0; f < 5; ++f) m.add_face({f, (f + 1) % 5, (f + 2) % 5});
+    REQUIRE_FALSE(inspect_mesh(m).orientable);
+    repaired_mesh const r = repair_mesh(m, {.orient = true});
+    CHECK((r.report.turned_faces.empty() || r.report.turned_faces.size() == 5));
+    CHECK_FALSE(inspect_mesh(r.mesh).orientable);
 }
 
 TEST_CASE("holes up to the given size are filled and counted") {

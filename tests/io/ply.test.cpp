@@ -253,6 +253,9 @@ TEST_CASE("the PLY writer refuses what it cannot write") {
     };
     double const nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(code({}, {.coordinates = coordinate_type::float32}) == errc::format_limit);
+    indexed_mesh thin = mesh;
+    thin.add_face({0, 1});
+    CHECK(failure_of([&] { return encode_ply(thin); }).code == errc::degenerate_face);
     CHECK(code({}, {.origin = {nan, 0, 0}}) == errc::non_finite_vertex);
     CHECK(code({.vertex_channels = {{"x", {1, 2, 3}}}}) == errc::bad_parameter);
     CHECK(code({.vertex_channels = {{"a b", {1, 2, 3}}}}) == errc::bad_parameter);

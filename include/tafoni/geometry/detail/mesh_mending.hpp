@@ -7,7 +7,12 @@
 #include <tafoni/geometry/detail/outward_shells.hpp>
 #include <tafoni/geometry/detail/split_fans.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace tafoni::detail {
 
@@ -209,10 +214,16 @@ inline std::size_t mesh_mender::pair_crowded_edges() {
     (void)pairing();
     edge_table const edges(mesh);
     struct spoke {
-        double x;
-        double y;
+        double turn;  ///< grows with the angle, from 0 to 4; 0 for a face without area
         std::uint32_t corner;
         bool forward;
+    };
+    // A number per spoke and not a comparison of two: cross products that round to zero have no order.
+    auto const turn_of = [](double x, double y) {
+        double const size = std::fabs(x) + std::fabs(y);
+        if (!(size > 0 && size <= std::numeric_limits<double>::max())) return 0.0;
+        if (y >= 0) return x >= 0 ? y / size : 1 - x / size;
+        return x < 0 ? 2 - y / size : 3 + x / size;
     };
     std::vector<spoke> spokes;
     std::vector<std::uint32_t> waiting;
@@ -247,14 +258,10 @@ inline std::size_t mesh_mender::pair_crowded_edges() {
             bool const forward = edges.forward(s);
             vec3 const into = cross(normal, axis);
             double const sign = forward ? 1 : -1;
-            spokes.push_back({sign * dot(into, u), sign * dot(into, w), s.corner, forward});
+            spokes.push_back({turn_of(sign * dot(into, u), sign * dot(into, w)), s.corner, forward});
         }
-        auto const upper = [](spoke const& s) { return s.y > 0 || (s.y == 0 && s.x > 0); };
-        std::sort(spokes.begin(), spokes.end(), [&](spoke const& s, spoke const& t) {
-            if (upper(s) != upper(t)) return upper(s);
-            double const turn = s.x * t.y - s.y * t.x;
-            if (turn != 0) return turn > 0;
-            return s.corner < t.corner;
+        std::sort(spokes.begin(), spokes.end(), [](spoke const& s, spoke const& t) {
+            return s.turn != t.turn ? s.turn < t.turn : s.corner < t.corner;
         });
         // Counter-clockwise about the edge a wedge of rock opens with a backward side and ends with a
         // forward one; going round twice lets a wedge reach over the start.
