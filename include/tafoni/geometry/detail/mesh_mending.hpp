@@ -319,11 +319,23 @@ inline std::size_t mesh_mender::fill_holes(std::size_t most) {
 
 inline std::size_t mesh_mender::turn_outwards() {
     auto const inward = inward_shells(mesh, pairing());
+    if (inward.empty()) return 0;
+    // A part that could not be oriented has no outside; it stays as it is.
+    side_mates const mates(edge_table(mesh), mesh.corners.size());
+    auto const agrees = [&](std::uint32_t f) {
+        for (std::size_t c = mesh.offsets[f]; c < mesh.offsets[f + 1]; ++c) {
+            if (mates.same_way[c] != 0) return false;
+        }
+        return true;
+    };
+    std::size_t count = 0;
     for (auto const& shell : inward) {
+        if (!std::all_of(shell.begin(), shell.end(), agrees)) continue;
         for (std::uint32_t const f : shell) turn_face(f);
+        ++count;
     }
-    if (!inward.empty()) across_.reset();
-    return inward.size();
+    if (count > 0) across_.reset();
+    return count;
 }
 
 }  // namespace tafoni::detail
