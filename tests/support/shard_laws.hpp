@@ -132,7 +132,7 @@ inline std::vector<std::string> broken_laws(tafoni::solid const& body, tafoni::s
     }
     tafoni::shard_locator const locate(c);
     tafoni::stream draw(11, tafoni::stage::user, 0);
-    for (std::size_t k = 0; k < options.points && options.embedded && !merged; ++k) {
+    for (std::size_t k = 0; k < options.points && options.embedded; ++k) {
         vec3 x{0, 0, 0};
         for (int a = 0; a < 3; ++a) x[a] = draw.uniform(body.bounds.lo[a], body.bounds.hi[a]);
         bool const inside = tafoni::winding_number(body, x) != 0;
@@ -141,9 +141,12 @@ inline std::vector<std::string> broken_laws(tafoni::solid const& body, tafoni::s
             report("law 4: a point ", inside ? "inside" : "outside", " lies in ", shard.valid() ? "a shard" : "no shard");
             continue;
         }
-        if (!inside) continue;
+        if (!inside || merged) continue;
         double best = std::numeric_limits<double>::infinity();
-        for (vec3 const& s : c.sites) best = std::min(best, tafoni::length(vec3(x - s)));
+        for (std::uint32_t s = 0; s < c.sites.size(); ++s) {
+            if (c.shards_of(tafoni::site_index{s}).empty()) continue;  // dropped, or without a share of the solid
+            best = std::min(best, tafoni::length(vec3(x - c.sites[s])));
+        }
         double const own = tafoni::length(vec3(x - c.sites[c.site_of[shard.value].value]));
         if (own > best + options.tolerance * size) report("law 4: a point lies ", own - best, " nearer to another site");
     }

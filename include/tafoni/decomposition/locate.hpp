@@ -23,13 +23,17 @@ namespace tafoni {
 class shard_locator {
 public:
     /// O(n log n) for n sites.
-    explicit shard_locator(shard_complex const& complex) : complex_(&complex), order_(complex.sites.size()) {
-        for (std::uint32_t s = 0; s < order_.size(); ++s) order_[s] = s;
+    explicit shard_locator(shard_complex const& complex) : complex_(&complex) {
+        for (std::uint32_t s = 0; s < complex.sites.size(); ++s) {
+            // A site without shards was dropped, or its cell lies outside: it is nearest to no point inside.
+            if (!complex.shards_of(site_index{s}).empty()) order_.push_back(s);
+        }
         axis_.resize(order_.size());
         build(0, order_.size());
     }
 
-    /// The shard around p; not valid outside the solid. O(log n + corners of the shards of one site).
+    /// The shard around p; not valid outside the solid. O(log n + corners of the shards of one site); where
+    /// slivers were merged, O(corners of all) for points outside or in what was a sliver.
     [[nodiscard]] cell_index operator()(vec3 const& p) const {
         if (order_.empty()) return {};
         double best = std::numeric_limits<double>::infinity();
@@ -48,6 +52,10 @@ public:
             for (cell_index shard : complex_->shards_of(site_index{s})) {
                 if (wraps(shard, p)) return shard;
             }
+        }
+        if (complex_->merged_slivers == 0) return {};
+        for (std::uint32_t c = 0; c < complex_->cell_count(); ++c) {  // slivers went to shards of other sites
+            if (wraps(cell_index{c}, p)) return cell_index{c};
         }
         return {};
     }
