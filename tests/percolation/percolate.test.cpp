@@ -311,6 +311,36 @@ TEST_CASE("a policy that answers NaN, infinity or less than nothing is named") {
     }
 }
 
+TEST_CASE("an acceptance or a soaking chance outside [0, 1] is named, rounding aside") {
+    box_network const n(3, 3, 3);
+    auto const table = fresh_table(n);
+    auto const skin = fresh_skin(table);
+    path_scratch memory;
+    std::vector<path_visit> visits;
+    struct {
+        double answer;
+        double acceptance(link_view const&, vec3 const&) const { return answer; }
+    } accepting{};
+    struct {
+        double answer;
+        double soak_chance(link_view const&, water const&) const { return answer; }
+    } greedy{};
+    for (double const bad : {-0.01, 1.01, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+        accepting.answer = greedy.answer = bad;
+        CHECK_THROWS_AS(
+            percolate(table, skin, policies(slanting, accepting, gravity, drinking, soaking), numbers(), 0, visits, memory),
+            invalid_input);
+        CHECK_THROWS_AS(
+            percolate(table, skin, policies(slanting, facing, gravity, drinking, greedy), numbers(), 0, visits, memory),
+            invalid_input);
+    }
+    for (double const good : {-1e-12, 0.0, 1.0, 1 + 1e-12}) {
+        accepting.answer = greedy.answer = good;
+        CHECK_NOTHROW(
+            percolate(table, skin, policies(slanting, accepting, gravity, drinking, greedy), numbers(), 0, visits, memory));
+    }
+}
+
 TEST_CASE("a table refuses areas and centroids that are not numbers") {
     box_network n(2, 1, 1);
     n.links[3].area = 0;

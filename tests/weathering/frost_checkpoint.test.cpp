@@ -107,3 +107,42 @@ TEST_CASE("a checkpoint cut at any byte or with any byte changed is refused and 
     CHECK(refusal(victim, {}) == errc::wrong_format);
     CHECK((victim.checkpoint() == before));
 }
+
+TEST_CASE("a forged checkpoint with a right checksum is refused, or makes a run that works") {
+    box_network const n(2, 2, 2);
+    auto const preset = paper_preset();
+    frost_run run(n, preset.process, preset.options);
+    run.run({.paths = 400});
+    auto const saved = run.checkpoint();
+    REQUIRE(run.blocks().size() > 0);
+    frost_run victim(n, preset.process, preset.options);
+    victim.run({.paths = 7});
+    auto const before = victim.checkpoint();
+    int refused = 0;
+    int taken = 0;
+    for (std::uint64_t k = 0; k < 4000; ++k) {
+        stream random(3, stage::user, k);
+        auto forged = saved;
+        std::uint64_t const changes = 1 + random.index_below(3);
+        for (std::uint64_t c = 0; c < changes; ++c) {
+            std::size_t const at = 44 + random.index_below(saved.size() - 52);  // past magic and hashes
+            forged[at] = static_cast<std::byte>(random.chance(0.3) ? 0xFFU : random.index_below(256));
+        }
+        std::uint64_t const sum = detail::byte_hash(std::span(forged).first(forged.size() - 8));
+        for (std::size_t b = 0; b < 8; ++b) forged[forged.size() - 8 + b] = static_cast<std::byte>(sum >> (8 * b) & 0xFF);
+        if (refusal(victim, forged) != errc{}) {
+            ++refused;
+            REQUIRE((victim.checkpoint() == before));
+            continue;
+        }
+        ++taken;
+        frost_run other = victim;
+        other.run({.paths = 20});
+        std::uint64_t lost = 0;
+        for (cell_state const c : other.cells()) lost += c == cell_state::air ? 1U : 0U;
+        REQUIRE(other.report().cells_detached <= lost);
+        victim.resume(before);
+    }
+    CHECK(refused > 1000);
+    CHECK(taken > 100);
+}

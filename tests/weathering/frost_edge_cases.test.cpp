@@ -137,3 +137,65 @@ TEST_CASE("traces look and do not touch") {
     auto const r = run.run({.paths = 1});
     CHECK(r.links_traversed == t.visits);
 }
+
+namespace {
+
+/// Cells in a row from top to bottom; rain enters the uppermost only.
+struct column {
+    std::size_t n;
+    std::size_t cell_count() const { return n; }
+    double cell_volume(cell_index) const { return 1; }
+    std::size_t link_count() const { return n; }
+    bool has_link(link_index) const { return true; }
+    std::array<cell_index, 2> link_cells(link_index l) const {
+        if (l.value == 0) return {cell_index{0U}, cell_index{}};
+        return {cell_index{l.value}, cell_index{l.value - 1}};
+    }
+    double link_area(link_index) const { return 1; }
+    vec3 link_centroid(link_index l) const { return {0, 0, -1.0 * l.value}; }
+    vec3 link_normal(link_index) const { return {0, 0, 1}; }
+    void for_each_cell_link(cell_index c, auto&& f) const {
+        f(link_index{c.value});
+        if (c.value + 1 < n) f(link_index{c.value + 1});
+    }
+    void for_each_neighbor(link_index l, auto&& f) const {
+        if (l.value > 0) f(link_index{l.value - 1});
+        if (l.value + 1 < n) f(link_index{l.value + 1});
+    }
+};
+
+struct sip {
+    double absorbed(link_view const&, water const&, link_scale const&) const { return 1e-9; }
+    double soak_chance(link_view const&, water const&) const { return 0; }
+};
+
+struct shatter {
+    double damage(link_view const&, double w, link_scale const&) const { return w > 0 ? 1.0 : 0.0; }
+};
+
+struct doubtful {
+    double break_chance(link_view const&) const { return std::numeric_limits<double>::quiet_NaN(); }
+};
+
+}  // namespace
+
+TEST_CASE("one path that breaks a hundred thousand bonds costs no more than their sum") {
+    column const n{100000};
+    frost_run run(n, frost_wedging{.absorb = sip{}, .wear = wear{.harm = shatter{}}});
+    auto const r = run.run({.paths = 1});  // seconds would pass if a break looked at all pieces before it
+    CHECK(r.links_broken == n.n - 1);
+    CHECK(r.cells_detached == n.n - 1);
+    CHECK(r.blocks == n.n - 1);
+    CHECK(run.cell(cell_index{0U}) == cell_state::solid);  // all tie; the lowest stands
+}
+
+TEST_CASE("a break chance that is no chance is named, and the path did not happen") {
+    box_network const n(3, 3, 3);
+    frost_run run(n, frost_wedging{.wear = wear{.breakage = doubtful{}}});
+    auto const before = run.checkpoint();
+    CHECK_THROWS_AS(run.run({.paths = 20}), invalid_input);
+    CHECK(run.paths() < 20);
+    frost_run fresh(n, frost_wedging{.wear = wear{.breakage = doubtful{}}});
+    CHECK((fresh.checkpoint() == before));
+    CHECK(run.report().links_broken == 0);
+}

@@ -354,7 +354,7 @@ struct make_link_graph_fn {
     /// edge with a face of l in one of the cells; faces that are too small pass neighbours on to
     /// their far sides, so that a lattice whose ties were broken by slivers has proper neighbours.
     /// Same bits for every executor. O(corners), with O(corners) scratch memory.
-    /// 	hrows invalid_input  `bad_parameter`, `size_overflow`; `cancelled` by the observer.
+    /// \throws invalid_input  `bad_parameter`, `size_overflow`; `cancelled` by the observer.
     template <cell_complex Complex, executor Executor = inline_executor>
     [[nodiscard]] link_graph operator()(Complex const& complex, link_graph_options const& options = {},
                                         Executor const& threads = {}, run_context const& context = {}) const {

@@ -17,10 +17,11 @@ namespace tafoni {
 ///
 /// `draw` proposes a link by weight and accepts it with the caller's probability: exact in
 /// distribution [von Neumann's rejection]. After `most_rejections` it draws from the exact sums over all
-/// weighted links instead, so it cannot stall where hardly any link accepts.
+/// weighted links instead, so it cannot stall where hardly any link accepts. A tall column whose top is one
+/// hundredth of its skin still needs those sums in one draw of a hundred only.
 class entry_tree {
 public:
-    static constexpr int most_rejections = 64;
+    static constexpr int most_rejections = 512;
 
     /// Memory of the exact draw; one per thread. Reused while direction and tree stay the same.
     struct scratch {

@@ -49,7 +49,7 @@ public:
             if (!(r.area > 0 && r.area <= std::numeric_limits<double>::max()) || !is_finite(c)) {
                 detail::fail<invalid_input>(errc::out_of_range,
                                             "link_table: link " + std::to_string(i) + " has area " +
-                                                std::to_string(r.area) + " or a centroid that is not finite",
+                                                detail::number_text(r.area) + " or a centroid that is not finite",
                                             {.kind = entity::link, .index = i, .value = r.area});
             }
             r.life = r.cells[1].valid() ? 1.0 : 0.0;

@@ -69,16 +69,23 @@ struct path_scratch {
 
 namespace detail {
 
-[[noreturn]] inline void bad_answer(char const* who, link_index l, double value) {
+[[noreturn]] inline void bad_answer(char const* who, link_index l, double value,
+                                    char const* allowed = ">= 0 and finite") {
     fail<invalid_input>(errc::out_of_range,
-                        std::string(who) + ": a policy answered " + std::to_string(value) + " at link " +
-                            std::to_string(l.value) + ", allowed >= 0 and finite",
+                        std::string(who) + ": a policy answered " + number_text(value) + " at link " +
+                            std::to_string(l.value) + ", allowed " + allowed,
                         {.kind = entity::link, .index = l.value, .value = value, .limit = 0});
 }
 
 /// Throws unless 0 <= value < infinity.
 inline void require_answer(char const* who, link_index l, double value) {
     if (!(value >= 0 && value <= std::numeric_limits<double>::max())) bad_answer(who, l, value);
+}
+
+/// Throws unless `value` is a chance or a share, in [0, 1] but for rounding.
+inline double require_share(char const* who, link_index l, double value) {
+    if (!(value >= -1e-6 && value <= 1 + 1e-6)) bad_answer(who, l, value, "[0, 1]");
+    return value;
 }
 
 /// Draws one of Neigh(here) by flow weight; not valid when all weights are 0. O(Neigh).
@@ -122,7 +129,8 @@ template <class Network, class Flow>
 /// and broken ones are ways, links with air on both sides are not. Draws come from
 /// stream(seed, stage, path): one stream per stage, so no policy shifts another's draws.
 /// Cost O(visits x Neigh).
-/// \throws invalid_input  when a policy answers with a negative or non-finite number.
+/// \throws invalid_input  `out_of_range` when a weight or an absorption is negative or not finite, or an
+///                        acceptance, a chance or a share is outside [0, 1]; it names the link.
 struct percolate_fn {
     template <class Network, class Policies>
     path_trace operator()(link_table<Network> const& table, entry_tree const& skin, Policies const& policies,
@@ -134,7 +142,10 @@ struct percolate_fn {
         stream entry(options.seed, stage::entry, path);
         double const key[3] = {direction[0], direction[1], direction[2]};
         trace.entry = skin.draw(
-            entry, key, [&](link_index l) { return policies.infiltration.acceptance(table.view(l), direction); },
+            entry, key,
+            [&](link_index l) {
+                return detail::require_share("infiltration", l, policies.infiltration.acceptance(table.view(l), direction));
+            },
             memory.entry);
         if (!trace.entry.valid()) return trace;
 
@@ -155,14 +166,13 @@ struct percolate_fn {
                 return trace;
             }
             link_view const l = table.view(here);
-            double const chance = policies.soaking.soak_chance(l, w);
+            double const chance = detail::require_share("soaking", here, policies.soaking.soak_chance(l, w));
             std::int64_t absorbed = 0;
-            if (!(chance <= 0) && soak.chance(chance)) {
+            if (chance > 0 && soak.chance(chance)) {
                 absorbed = left;
                 if constexpr (requires { policies.soaking.soaked_share(l); }) {
-                    double const share = policies.soaking.soaked_share(l);
-                    detail::require_answer("soaking", here, share);
-                    if (share < 1) absorbed = water_unit::from(w.now * share);
+                    double const share = detail::require_share("soaking", here, policies.soaking.soaked_share(l));
+                    if (share < 1) absorbed = share > 0 ? water_unit::from(w.now * share) : 0;
                 }
                 trace.lost += left - absorbed;
                 left = 0;

@@ -20,7 +20,7 @@ inline void require_unit(char const* name, vec3 const& d) {
     double const l = length(d);
     if (!(std::fabs(l - 1) <= 1e-6)) {
         fail<invalid_input>(errc::bad_parameter,
-                            std::string(name) + ": got length " + std::to_string(l) + ", allowed 1 (unit vector)",
+                            std::string(name) + ": got length " + number_text(l) + ", allowed 1 (unit vector)",
                             {.kind = entity::parameter, .value = l, .limit = 1});
     }
 }

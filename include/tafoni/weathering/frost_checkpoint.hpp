@@ -5,6 +5,7 @@
 
 #include <tafoni/weathering/detail/frost_core.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -179,7 +180,11 @@ void read_checkpoint(frost_core<Network, Process, Exposure>& core, std::span<std
         *v = in.get();
     }
     c.volume_detached = static_cast<std::int64_t>(in.get());
-    for (wide_int* v : {&c.water.inflow, &c.water.absorbed, &c.water.lost, &c.water.drained}) *v = in.get_wide();
+    for (wide_int* v : {&c.water.inflow, &c.water.absorbed, &c.water.lost, &c.water.drained}) {
+        *v = in.get_wide();
+        if (*v < 0 || *v >> 122 != 0) bad("an amount of water is out of range");
+    }
+    if (c.water.inflow != c.water.absorbed + c.water.lost + c.water.drained) bad("the water does not add up");
     for (auto* list : {&s.cells, &s.marks}) {
         for (cell_state& v : *list) {
             std::uint64_t const b = in.get(1);
@@ -199,6 +204,8 @@ void read_checkpoint(frost_core<Network, Process, Exposure>& core, std::span<std
         if (!(v >= 0 && v <= 1)) bad("a life is outside [0, 1]");
     }
     s.blocks.clear();
+    std::vector<bool> fallen(s.cells.size(), false);
+    std::int64_t all = 0;
     std::uint64_t const blocks = in.get();
     for (std::uint64_t k = 0; k < blocks; ++k) {
         detached_block b;
@@ -209,20 +216,34 @@ void read_checkpoint(frost_core<Network, Process, Exposure>& core, std::span<std
         for (std::uint64_t j = 0; j < n; ++j) {
             cell_index const cell{static_cast<std::uint32_t>(in.get(4))};
             if (cell.value >= s.cells.size()) bad("a block names a cell that does not exist");
+            if (s.cells[cell.value] != cell_state::air || fallen[cell.value]) bad("a cell fell twice, or not at all");
+            if (j > 0 && !(b.cells.back() < cell)) bad("the cells of a block are not ascending");
+            fallen[cell.value] = true;
             volume += s.volumes[cell.value];
             b.cells.push_back(cell);
         }
         b.volume = from_fixed(volume, s.total_volume);
+        all += volume;
         s.blocks.push_back(std::move(b));
     }
+    auto const gone = static_cast<std::uint64_t>(std::count(fallen.begin(), fallen.end(), true));
+    if (all != c.volume_detached || gone != c.cells_detached) bad("the blocks do not add up");
     std::uint64_t const expected = byte_hash(bytes.first(bytes.size() - in.left()));
     if (in.get() != expected) bad("the checksum is wrong");
     if (in.left() != 0) bad("bytes follow the end");
-    core.dirty = true;
-    std::swap(core.state, s);
-    core.states.swap(states);
-    for (std::size_t i = 0; i < lives.size(); ++i) core.table[link_index{i}].life = lives[i];
-    core.rebuild();
+    auto const exchange = [&] {
+        core.dirty = true;
+        std::swap(core.state, s);
+        core.states.swap(states);
+        for (std::size_t i = 0; i < lives.size(); ++i) std::swap(core.table[link_index{i}].life, lives[i]);
+    };
+    exchange();
+    try {
+        core.rebuild();
+    } catch (...) {  // out of memory: as before, and the next call rebuilds
+        exchange();
+        throw;
+    }
 }
 
 }  // namespace tafoni::detail

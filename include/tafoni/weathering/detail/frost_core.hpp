@@ -84,7 +84,7 @@ public:
                 rho[i] = p.flow.resistance_at(vec3{r.x, r.y, r.z});
                 if (!(rho[i] >= 0 && rho[i] <= 1)) {
                     fail<invalid_input>(errc::out_of_range,
-                                        "frost_run: resistance " + std::to_string(rho[i]) + " at link " +
+                                        "frost_run: resistance " + number_text(rho[i]) + " at link " +
                                             std::to_string(i) + ", allowed [0, 1]",
                                         {.kind = entity::link, .index = i, .value = rho[i], .limit = 1});
                 }
@@ -219,19 +219,29 @@ public:
     /// Bond by bond, since the two ends of one bond lie close together; nothing falls until all are cut.
     void settle() {
         auto const start = std::chrono::steady_clock::now();
+        for (piece const& p : pieces_) {  // left over where a throw ended the last search
+            if (p.component < piece_of_.size()) piece_of_[p.component] = piece::none;
+        }
         pieces_.clear();
         std::uint32_t wholes = 0;
-        std::uint32_t order = 0;
         for (link_index const l : broken_) {
             std::uint32_t const whole = bonds.component_of(table[l].cells[0]);
             auto const parted = bonds.break_link(table.network(), l);
             if (!parted) continue;
-            auto const known = std::find_if(pieces_.begin(), pieces_.end(),
-                                            [&](piece const& p) { return p.component == whole; });
-            std::uint32_t const of = known != pieces_.end() ? known->whole : wholes++;
-            if (known != pieces_.end()) pieces_.erase(known);
-            for (std::uint32_t const component : parted->components) pieces_.push_back({of, order++, component, false});
+            std::uint32_t const known = whole < piece_of_.size() ? piece_of_[whole] : piece::none;
+            std::uint32_t const of = known != piece::none ? pieces_[known].whole : wholes++;
+            if (known != piece::none) pieces_[known].parted = true;
+            for (std::uint32_t const component : parted->components) {
+                if (component >= piece_of_.size()) piece_of_.resize(component + 1, piece::none);
+                auto const order = static_cast<std::uint32_t>(pieces_.size());
+                pieces_.push_back({.whole = of, .order = order, .component = component});
+                piece_of_[component] = order;
+            }
         }
+        std::erase_if(pieces_, [this](piece const& p) {
+            piece_of_[p.component] = piece::none;
+            return p.parted;
+        });
         std::sort(pieces_.begin(), pieces_.end(), [](piece const& a, piece const& b) {
             return a.whole != b.whole ? a.whole < b.whole : a.order < b.order;
         });
@@ -267,7 +277,6 @@ public:
         state.blocks.push_back({state.count.paths, {cells.begin(), cells.end()}, 0});
         detached_block& block = state.blocks.back();
         Network const& network = table.network();
-        fallen_.reserve(fallen_.size() + block.cells.size());
         for (cell_index const c : block.cells) {
             network.for_each_cell_link(c, [this](link_index l) { former_.push_back({l, states[l.value]}); });
         }
@@ -317,8 +326,11 @@ private:
 
     struct piece {
         std::uint32_t whole = 0;  ///< pieces of one former part share it
+        static constexpr std::uint32_t none = ~std::uint32_t{0};
+
         std::uint32_t order = 0;
         std::uint32_t component = 0;
+        bool parted = false;  ///< came apart further within the batch
         bool falls = false;
     };
 
@@ -356,8 +368,8 @@ private:
             }
             r.life = left;
             l.life = left;
-            double const chance = process.wear.break_chance(l);
-            if (!(chance <= 0) && random.chance(chance)) break_bond(v.link);
+            double const chance = require_share("breakage", v.link, process.wear.break_chance(l));
+            if (chance > 0 && random.chance(chance)) break_bond(v.link);
         }
     }
 
@@ -377,6 +389,7 @@ private:
     std::vector<std::pair<cell_index, cell_state>> fallen_{};
     std::vector<std::pair<link_index, link_state>> former_{};
     std::vector<piece> pieces_{};
+    std::vector<std::uint32_t> piece_of_{};  ///< per component: its place in pieces_, while `settle` looks
     std::optional<typename Exposure::state> exposure_memory_{};
     exposure_change change_{};
 };

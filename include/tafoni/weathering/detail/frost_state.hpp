@@ -56,7 +56,7 @@ struct frost_state {
             double const v = network.cell_volume(cell_index{c});
             if (!(v > 0 && v <= std::numeric_limits<double>::max())) {
                 fail<invalid_input>(errc::out_of_range,
-                                    "frost_run: cell " + std::to_string(c) + " has volume " + std::to_string(v),
+                                    "frost_run: cell " + std::to_string(c) + " has volume " + number_text(v),
                                     {.kind = entity::cell, .index = c, .value = v, .limit = 0});
             }
         }
