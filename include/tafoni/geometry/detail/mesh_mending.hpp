@@ -284,6 +284,7 @@ inline std::size_t mesh_mender::pair_crowded_edges() {
 inline std::size_t mesh_mender::fill_holes(std::size_t most) {
     std::vector<std::uint32_t> const& across = pairing();
     std::vector<std::uint32_t> next(mesh.vertex_count(), none);
+    std::vector<std::uint32_t> beside(mesh.vertex_count(), none);  // the face at the open side that starts here
     std::vector<std::uint8_t> busy(mesh.vertex_count(), 0);
     std::vector<std::uint32_t> starts;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -293,6 +294,7 @@ inline std::size_t mesh_mender::fill_holes(std::size_t most) {
             std::uint32_t const to = mesh.corners[c + 1 == mesh.offsets[f + 1] ? mesh.offsets[f] : c + 1];
             if (next[to] != none) busy[to] = 1;
             next[to] = from;
+            beside[to] = static_cast<std::uint32_t>(f);
             starts.push_back(to);
         }
     }
@@ -308,6 +310,12 @@ inline std::size_t mesh_mender::fill_holes(std::size_t most) {
             v = next[v];
         }
         if (v != start || loop.size() < 3 || loop.size() > most || busy[start] != 0) continue;
+        // A face that stands alone is no hole: its other side would be a duplicate of it.
+        std::uint32_t const f = beside[start];
+        if (mesh.face(f).size() == loop.size() &&
+            std::all_of(loop.begin(), loop.end(), [&](std::uint32_t w) { return beside[w] == f; })) {
+            continue;
+        }
         mesh.add_face(loop);
         face_of.push_back(none);
         turned_.push_back(0);
