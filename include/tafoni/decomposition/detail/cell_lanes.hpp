@@ -25,6 +25,15 @@ using lanes = double __attribute__((vector_size(8 * cell_lanes)));
 
 inline void store_lanes(double* p, lanes const& v) noexcept { __builtin_memcpy(p, &v, sizeof v); }
 
+/// Squares of the distances from the interval [lo, hi].
+[[nodiscard]] inline lanes gap2(double lo, double hi, lanes const& q) noexcept {
+    lanes const below = lo - q;
+    lanes const above = q - hi;
+    lanes const most = below > above ? below : above;
+    lanes const gap = most > 0 ? most : lanes{};
+    return gap * gap;
+}
+
 }  // namespace baseline or avx
 }  // namespace tafoni::detail
 

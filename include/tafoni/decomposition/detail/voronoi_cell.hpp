@@ -109,16 +109,8 @@ public:
 
     /// Could a site in the box (lattice units relative to this site) cut the cell? Never a wrong no. O(vertices).
     [[nodiscard]] bool reachable(std::array<double, 3> const& lo, std::array<double, 3> const& hi) const noexcept {
-        lanes const zero{};
-        lanes reached = zero - 1;
+        lanes reached = lanes{} - 1;
         for (std::uint32_t v = 0; v < count_; v += cell_lanes) {
-            auto const gap2 = [&](double l, double u, lanes q) {
-                lanes const below = l - q;
-                lanes const above = q - u;
-                lanes const most = below > above ? below : above;
-                lanes const gap = most > zero ? most : zero;
-                return gap * gap;
-            };
             lanes const spare = 1.000001 * load_lanes(r2_.data() + v) - gap2(lo[0], hi[0], load_lanes(x_.data() + v)) -
                                 gap2(lo[1], hi[1], load_lanes(y_.data() + v)) - gap2(lo[2], hi[2], load_lanes(z_.data() + v));
             reached = spare > reached ? spare : reached;
@@ -165,6 +157,7 @@ private:
         std::uint32_t kept;
     };
 
+    static bool key_below(directed_edge const& l, std::uint64_t r) noexcept { return l.key < r; }
     static std::uint64_t key(std::uint64_t a, std::uint64_t b) noexcept { return a << 32 | b; }
 
     [[nodiscard]] std::uint32_t holder(id a, id b) const noexcept {
@@ -172,8 +165,7 @@ private:
             return holder_[a * Planes + b];
         } else {
             auto const k = key(a, b);
-            auto const e = std::lower_bound(edges_.begin(), edges_.end(), k,
-                                            [](directed_edge const& l, std::uint64_t r) { return l.key < r; });
+            auto const e = std::lower_bound(edges_.begin(), edges_.end(), k, key_below);
             return e->vertex;
         }
     }
@@ -292,8 +284,7 @@ private:
             std::sort(edges_.begin(), edges_.end(), [](auto const& a, auto const& b) { return a.key < b.key; });
             for (auto const& e : edges_) {
                 std::uint64_t const twin = key(e.key & 0xffffffffU, e.key >> 32);
-                auto const t = std::lower_bound(edges_.begin(), edges_.end(), twin,
-                                                [](directed_edge const& l, std::uint64_t r) { return l.key < r; });
+                auto const t = std::lower_bound(edges_.begin(), edges_.end(), twin, key_below);
                 if (t != edges_.end() && t->key == twin) continue;
                 open_[open_count_++] = {static_cast<id>(e.key >> 32), static_cast<id>(e.key & 0xffffffffU), e.vertex, 0};
             }
@@ -307,11 +298,9 @@ private:
             p = free_.back();
             free_.pop_back();
         } else {
-            if constexpr (fixed) {
-                if (planes_ == Planes) {
-                    for (std::size_t k = 0; k < removed_count_; ++k) flag_[removed_[k]] = 0;
-                    return false;
-                }
+            if (fixed && planes_ == Planes) {
+                for (std::size_t k = 0; k < removed_count_; ++k) flag_[removed_[k]] = 0;
+                return false;
             }
             p = static_cast<id>(planes_++);
             grow(count_, planes_);
