@@ -61,6 +61,17 @@ every_allocation fail_every_allocation(Work const& work, long stride = 1) {
 
 void* operator new(std::size_t n) { return tafoni_test::allocate(n, 16); }
 void* operator new(std::size_t n, std::align_val_t a) { return tafoni_test::allocate(n, static_cast<std::size_t>(a)); }
+void* operator new[](std::size_t n) { return tafoni_test::allocate(n, 16); }
+void* operator new(std::size_t n, std::nothrow_t const&) noexcept {
+    try {
+        return tafoni_test::allocate(n, 16);
+    } catch (std::bad_alloc const&) {
+        return nullptr;
+    }
+}
+void operator delete[](void* p) noexcept { tafoni_test::release(p); }
+void operator delete[](void* p, std::size_t) noexcept { tafoni_test::release(p); }
+void operator delete(void* p, std::nothrow_t const&) noexcept { tafoni_test::release(p); }
 void operator delete(void* p) noexcept { tafoni_test::release(p); }
 void operator delete(void* p, std::size_t) noexcept { tafoni_test::release(p); }
 void operator delete(void* p, std::align_val_t) noexcept { tafoni_test::release(p); }
