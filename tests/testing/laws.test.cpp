@@ -11,6 +11,7 @@
 #include <tafoni/graph/surface_walk.hpp>
 #include <tafoni/testing/archetypes.hpp>
 #include <tafoni/testing/laws.hpp>
+#include <tafoni/weathering/frost_run.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -118,6 +119,58 @@ TEST_CASE("archetypes keep the laws of their concepts") {
     CHECK(laws::field(archetypes::field(0), 0, 1).empty());
     CHECK(laws::runs_blocks(archetypes::executor(0)).empty());
     CHECK(laws::network(archetypes::network{}).empty());
+    CHECK(laws::mesh(archetypes::mesh{}).empty());
+    CHECK(laws::complex(archetypes::complex{}).empty());
+    solid const body = make_solid(archetypes::mesh{});
+    CHECK(laws::sites(archetypes::sites(0), body).empty());
+    CHECK(laws::exposure(archetypes::exposure(0), box_network(3, 3, 3)).empty());
+}
+
+TEST_CASE("from mesh to weathered rock, everything is compiled with the least types and runs") {
+    solid const body = make_solid(archetypes::mesh{});
+    CHECK(body.volume == Approx(1.0 / 6));
+    auto const sites = archetypes::sites(0)(body, 1);
+    CHECK(make_link_graph(voronoi_shards(body, sites, {}, archetypes::executor(0))).exterior_link_count() > 0);
+
+    archetypes::complex const cubes;
+    link_graph const links = make_link_graph(cubes, {}, archetypes::executor(0));
+    CHECK(links.interior_link_count() == 1);
+    CHECK(links.exterior_link_count() == 10);
+    CHECK(links.neighbors(link_index{0U}).size() == 8);
+    CHECK(links.link_normal(link_index{0U})[2] == -1);  // out of the upper cube
+
+    archetypes::network const pair;
+    frost_run run(pair, frost_wedging{}, {}, archetypes::exposure(0));
+    auto const saved = run.checkpoint();
+    frost_run copy = run;
+    CHECK(run.break_link(link_index{1U}));
+    CHECK(run.report().cells_detached == 1);
+    CHECK(run.state(link_index{1U}) == link_state::skin);  // laid open: rock on one side, air on the other
+    copy.resume(saved);
+    CHECK((copy.checkpoint() == saved));
+}
+
+TEST_CASE("law checks find meshes that are read wrongly") {
+    indexed_mesh const box = tafoni_test::unit_box();
+    CHECK(laws::mesh(box).empty());
+    auto const one = [](indexed_mesh const& m) {
+        auto const broken = laws::mesh(m);
+        return broken.size() == 1 ? broken[0] : std::string();
+    };
+    CHECK(one(tafoni_test::inside_out(box)).find("counter-clockwise") != std::string::npos);
+    indexed_mesh far = box;
+    far.corners[5] = 99;
+    CHECK(one(far).find("exist") != std::string::npos);
+    indexed_mesh twice = box;
+    twice.corners[1] = twice.corners[0];
+    CHECK(one(twice).find("differ") != std::string::npos);
+    indexed_mesh lost = box;
+    lost.positions[3][1] = nan_value;
+    CHECK(one(lost).find("finite") != std::string::npos);
+    indexed_mesh open = box;
+    open.corners.resize(open.corners.size() - 4);
+    open.offsets.pop_back();
+    CHECK(laws::mesh(open).empty());
 }
 
 TEST_CASE("shipped executors and exposures keep their laws") {

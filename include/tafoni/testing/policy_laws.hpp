@@ -68,14 +68,14 @@ template <class Ask>
         double const b = ask(again);
         if (range && !(a >= lo && a <= hi)) {
             range = false;
-            got = std::to_string(a);
+            got = tafoni::detail::number_text(a);
         }
         if (!same(a, b)) pure = false;
     }
     broken_laws broken;
     if (!range) {
-        broken.push_back(std::string(what) + " answers within [" + std::to_string(lo) + ", " +
-                         (hi > 1e300 ? std::string("infinity)") : std::to_string(hi) + "]") + "; got " + got);
+        broken.push_back(std::string(what) + " answers within [" + tafoni::detail::number_text(lo) + ", " +
+                         (hi > 1e300 ? std::string("infinity)") : tafoni::detail::number_text(hi) + "]") + "; got " + got);
     }
     if (!pure) broken.push_back(std::string(what) + " is pure: equal questions get equal answers");
     return broken;
