@@ -54,8 +54,10 @@ struct repair_mesh_fn {
     /// Mends what was asked for and nothing else; whether the result bounds a solid is for `make_solid`
     /// to say. At an edge of an even number of faces the faces around each wedge of rock stay together,
     /// so solids that touch along an edge come apart; an edge where that cannot be is left open. A mesh
-    /// that needs nothing comes back bit for bit, and repairing twice changes nothing more (but where vertices are
-    /// merged and split, the copies are merged and split again and get other numbers).
+    /// that needs nothing comes back bit for bit, and repairing twice changes nothing more, with
+    /// two exceptions: where vertices are merged and split, the copies are merged and split again and get other
+    /// numbers; and with `fill_holes` and `split_nonmanifold` a filled hole can touch other faces, which only a
+    /// second pass splits.
     ///
     /// \throws invalid_input  non_finite_vertex, index_out_of_range, size_overflow; these are never mended.
     /// O(n log n), and O(triangles) per shell for `orient`.
