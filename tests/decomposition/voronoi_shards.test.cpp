@@ -2,10 +2,12 @@
 
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/thread_pool.hpp>
+#include <tafoni/decomposition/locate.hpp>
 #include <tafoni/geometry/make_solid.hpp>
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <set>
@@ -342,8 +344,37 @@ TEST_CASE("small shards go to a neighbour, and the volume stays") {
     auto const broken = broken_laws(body, some);
     for (auto const& b : broken) UNSCOPED_INFO(b);
     CHECK(broken.empty());
+    // A site whose cell went to a neighbour names the shard that holds it, so points there are still found.
+    shard_locator const before(all);
+    shard_locator const after(some);
     for (std::size_t s = 0; s < sites.size(); ++s) {
-        for (cell_index k : some.shards_of(site_index{s})) CHECK(some.site_of[k.value].value == s);
+        auto const shards = some.shards_of(site_index{s});
+        REQUIRE(shards.size() == 1);
+        CHECK(after(sites[s]) == shards[0]);
+        CHECK(after(all.centroids[before(sites[s]).value]) == shards[0]);
+    }
+    for (std::uint32_t k = 0; k < some.cell_count(); ++k) {
+        auto const own = some.shards_of(some.site_of[k]);
+        CHECK(std::count(own.begin(), own.end(), cell_index{k}) == 1);
+    }
+}
+
+TEST_CASE("a limit above every shard leaves one per part of the solid") {
+    solid const body = make_solid(tafoni_test::two_boxes());
+    auto const sites = uniform_points(body.bounds, 60);
+    auto const c = voronoi_shards(body, sites, {.min_volume = 1});
+    CHECK(c.cell_count() == 2);
+    CHECK(c.interior_face_count == 0);
+    auto const broken = broken_laws(body, c);
+    for (auto const& b : broken) UNSCOPED_INFO(b);
+    CHECK(broken.empty());
+    // What a shard took in brings neighbours along, so none stays below the limit.
+    solid const ball = make_solid(tafoni_test::icosphere(2));
+    for (double least : {0.01, 0.03, 0.1}) {
+        for (std::uint64_t seed = 0; seed < 10; ++seed) {
+            auto const r = voronoi_shards(ball, uniform_points(ball.bounds, 80, seed), {.min_volume = least});
+            for (double v : r.volumes) CHECK(v > least * ball.volume);
+        }
     }
 }
 

@@ -36,9 +36,9 @@ struct shard_complex {
     std::vector<std::size_t> cell_begin{0};     ///< cell -> first entry of cell_faces
     std::vector<double> volumes{};              ///< per cell, cubed length unit, > 0
     std::vector<vec3> centroids{};              ///< per cell, of its volume
-    std::vector<site_index> site_of{};          ///< per cell -> the caller's site
+    std::vector<site_index> site_of{};          ///< per cell -> the caller's site; after a merge that of the part that took the others in
     std::vector<vec3> sites{};                  ///< the caller's sites, in the caller's order
-    std::vector<cell_index> shards_of_site{};   ///< concatenated
+    std::vector<cell_index> shards_of_site{};   ///< those that hold parts of the site's cell, ascending, concatenated
     std::vector<std::size_t> site_begin{0};     ///< site -> first entry of shards_of_site
 
     std::vector<std::uint32_t> polygon_of{};    ///< triangle of the solid -> face of the input mesh

@@ -133,7 +133,7 @@ struct voronoi_shards_fn {
         out.sites.assign(sites.begin(), sites.end());
         out.merged_sites = diagram.merged_count();
         out.dropped_sites = sites.size() - lattice.given.size();
-        assemble_complex(interior, split, places, body, smooth_patches(body, options.patch_angle),
+        assemble_complex(interior, split, places, body, smooth_patches(body, options.patch_angle, threads),
                          static_cast<double>(shard_lattice::margin), threads, out);
         for (site_index& s : out.site_of) s = site_index{lattice.given[s.value]};
         std::vector<std::uint32_t> same_as;
@@ -145,8 +145,8 @@ struct voronoi_shards_fn {
             }
         }
         index_sites(out, same_as);
-        merge_slivers(out, options.min_volume * body.volume);
-        if (out.merged_slivers != 0) index_sites(out, same_as);
+        auto const moved = merge_slivers(out, options.min_volume * body.volume);
+        if (out.merged_slivers != 0) index_sites(out, same_as, moved);
         context.tick("assemble shards", 1);
         return out;
     }

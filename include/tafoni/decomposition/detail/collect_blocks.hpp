@@ -5,6 +5,7 @@
 
 #include <tafoni/core/executor.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -36,6 +37,36 @@ void gather_blocks(std::vector<Result>& results, Part const& part, std::vector<T
             std::vector<T>().swap(from);
         }
     });
+}
+
+/// The elements of all blocks in the one order that `less` allows: equal elements must be alike. The
+/// blocks are used up. O(n log n), the last merge on one thread.
+template <class T, class Executor, class Less>
+[[nodiscard]] std::vector<T> sorted_blocks(std::vector<std::vector<T>>& blocks, Executor const& threads, Less const& less) {
+    std::vector<T> all;
+    gather_blocks(blocks, [](std::vector<T>& b) -> auto& { return b; }, all, threads, [](T const& x, std::size_t) { return x; });
+    if (all.size() < 4096) {
+        std::sort(all.begin(), all.end(), less);
+        return all;
+    }
+    constexpr std::size_t parts = 16;
+    auto const at = [n = all.size()](std::size_t part) {
+        return static_cast<std::ptrdiff_t>(n / parts * part + std::min(part, n % parts));
+    };
+    threads.for_blocks(parts, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) std::sort(all.begin() + at(k), all.begin() + at(k + 1), less);
+    });
+    std::vector<T> merged(all.size());
+    for (std::size_t width = 1; width < parts; width *= 2) {
+        threads.for_blocks(parts, 2 * width, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; k += 2 * width) {
+                std::merge(all.begin() + at(k), all.begin() + at(k + width), all.begin() + at(k + width),
+                           all.begin() + at(k + 2 * width), merged.begin() + at(k), less);
+            }
+        });
+        all.swap(merged);
+    }
+    return all;
 }
 
 /// Appends `from` to `to` and frees it.

@@ -32,16 +32,24 @@ inline void index_cell_faces(shard_complex& c) {
     for_entries([&](std::uint32_t cell, std::uint32_t face) { c.cell_faces[next[cell]++] = face; });
 }
 
-/// Fills site_begin and shards_of_site from site_of. O(sites + cells).
+/// Where parts of a site's cell went that were too small to stay.
+struct moved_part {
+    site_index site;
+    cell_index shard;
+};
+
+/// Fills site_begin and shards_of_site from site_of and from what was moved. O(sites + cells).
 /// `same_as[s]` is the site whose cell the duplicate s shares; empty when there are no duplicates.
-inline void index_sites(shard_complex& c, std::vector<std::uint32_t> const& same_as) {
+inline void index_sites(shard_complex& c, std::vector<std::uint32_t> const& same_as, std::vector<moved_part> const& moved = {}) {
     std::vector<std::size_t> begin(c.sites.size() + 1, 0);
     for (site_index s : c.site_of) ++begin[s.value + 1];
+    for (moved_part const& m : moved) ++begin[m.site.value + 1];
     for (std::size_t s = 0; s < c.sites.size(); ++s) begin[s + 1] += begin[s];
-    std::vector<cell_index> shards(c.site_of.size());
+    std::vector<cell_index> shards(begin.back());
     std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
     for (std::uint32_t k = 0; k < c.site_of.size(); ++k) shards[next[c.site_of[k].value]++] = cell_index{k};
-    if (same_as.empty()) {
+    for (moved_part const& m : moved) shards[next[m.site.value]++] = m.shard;
+    if (same_as.empty() && moved.empty()) {
         c.site_begin = std::move(begin);
         c.shards_of_site = std::move(shards);
         return;
@@ -49,8 +57,14 @@ inline void index_sites(shard_complex& c, std::vector<std::uint32_t> const& same
     c.site_begin.assign(1, 0);
     c.shards_of_site.clear();
     for (std::size_t s = 0; s < c.sites.size(); ++s) {
-        std::uint32_t const o = same_as[s];
+        std::uint32_t const o = same_as.empty() ? static_cast<std::uint32_t>(s) : same_as[s];
+        auto const first = static_cast<std::ptrdiff_t>(c.shards_of_site.size());
         for (std::size_t k = begin[o]; k < begin[o + 1]; ++k) c.shards_of_site.push_back(shards[k]);
+        if (!moved.empty()) {
+            auto const less = [](cell_index a, cell_index b) { return a.value < b.value; };
+            std::sort(c.shards_of_site.begin() + first, c.shards_of_site.end(), less);
+            c.shards_of_site.erase(std::unique(c.shards_of_site.begin() + first, c.shards_of_site.end()), c.shards_of_site.end());
+        }
         c.site_begin.push_back(c.shards_of_site.size());
     }
 }

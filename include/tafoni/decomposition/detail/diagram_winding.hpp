@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -93,14 +92,11 @@ template <class Executor>
                 }
             }
         });
-    std::vector<edge_crossing> all;
-    for (auto& b : blocks) append_and_free(all, b);
-    std::sort(all.begin(), all.end(), [](edge_crossing const& x, edge_crossing const& y) {
+    return sorted_blocks(blocks, threads, [](edge_crossing const& x, edge_crossing const& y) {
         if (x.edge != y.edge) return x.edge < y.edge;
         if (x.along != y.along) return x.along < y.along;
         return x.number < y.number;
     });
-    return all;
 }
 
 /// For every vertex the vertex at the other end of the edge in each slot; none where three walls would meet. O(corners of the diagram).
@@ -133,6 +129,107 @@ template <class Executor>
     return ends;
 }
 
+/// Fills w.of from w.crossings and w.crossed. Each block of vertices is flooded on its own, relative to one vertex
+/// of every part that hangs together in it; then one part after the other is set right across the edges
+/// between blocks. O(vertices), the second step O(parts and pairs of parts that touch).
+template <class Executor>
+void flood(voronoi_diagram const& d, std::vector<std::array<std::uint32_t, 4>> const& ends, diagram_winding& w,
+           Executor const& threads) {
+    struct bridge {
+        std::uint32_t from;  // vertices at first, then parts
+        std::uint32_t to;
+        std::int32_t step;
+        bool operator<(bridge const& o) const noexcept { return from != o.from ? from < o.from : to < o.to; }
+    };
+    struct block {
+        std::vector<bridge> bridges;
+        std::uint32_t parts = 0;
+    };
+    constexpr std::size_t grain = 16384;
+    std::size_t const vertices = d.vertices.size();
+    auto const step_along = [&](std::uint32_t v, std::uint32_t s, std::uint32_t o) {
+        std::int32_t step = 0;
+        if ((w.crossed[v] >> s & 1) == 0) return step;
+        bool const forward = v < o;
+        std::uint64_t const edge = forward ? std::uint64_t{v} * 4 + s : std::uint64_t{o} * 4 + changing_slot(d.keys[o], d.keys[v]);
+        for (edge_crossing const& c : w.on_edge(edge)) step += forward ? c.step : -c.step;
+        return step;
+    };
+    w.of.assign(vertices, 0);
+    std::vector<std::uint32_t> part_of(vertices, no_id);
+    auto blocks = collect_blocks<block>(vertices, grain, threads, [&](std::size_t begin, std::size_t end, block& out) {
+        std::vector<std::uint32_t> queue;
+        for (std::uint32_t start = static_cast<std::uint32_t>(begin); start < end; ++start) {
+            if (part_of[start] != no_id) continue;
+            part_of[start] = out.parts;
+            queue.push_back(start);
+            while (!queue.empty()) {
+                std::uint32_t const v = queue.back();
+                queue.pop_back();
+                for (std::uint32_t s = 0; s < 4; ++s) {
+                    std::uint32_t const o = ends[v][s];
+                    if (o == no_id || o < begin) continue;
+                    if (o >= end) {
+                        out.bridges.push_back({v, o, w.of[v] + step_along(v, s, o)});
+                    } else if (part_of[o] == no_id) {
+                        part_of[o] = out.parts;
+                        w.of[o] = w.of[v] + step_along(v, s, o);
+                        queue.push_back(o);
+                    }
+                }
+            }
+            ++out.parts;
+        }
+    });
+    std::vector<std::uint32_t> first_part(blocks.size() + 1, 0);
+    for (std::size_t b = 0; b < blocks.size(); ++b) first_part[b + 1] = first_part[b] + blocks[b].parts;
+    // From here on a bridge leads from part to part, and one of each kind is enough.
+    threads.for_blocks(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            auto& bridges = blocks[b].bridges;
+            for (bridge& x : bridges) {
+                x.step -= w.of[x.to];
+                x = {first_part[b] + part_of[x.from], first_part[x.to / grain] + part_of[x.to], x.step};
+            }
+            std::sort(bridges.begin(), bridges.end());
+            auto const same = [](bridge const& x, bridge const& y) { return x.from == y.from && x.to == y.to; };
+            bridges.erase(std::unique(bridges.begin(), bridges.end(), same), bridges.end());
+        }
+    });
+    std::vector<bridge> both;
+    for (block& b : blocks) {
+        for (bridge const& x : b.bridges) {
+            both.push_back(x);
+            both.push_back({x.to, x.from, -x.step});
+        }
+    }
+    std::sort(both.begin(), both.end());
+    std::vector<std::int32_t> offset(first_part.back(), 0);
+    std::vector<std::uint8_t> known(first_part.back(), 0);
+    std::vector<std::uint32_t> queue;
+    std::uint32_t const sites = static_cast<std::uint32_t>(d.sites.size());
+    for (std::uint32_t v = 0; v < vertices && queue.empty(); ++v) {
+        if (d.keys[v][3] < sites) continue;
+        queue.push_back(first_part[v / grain] + part_of[v]);
+        known[queue[0]] = 1;
+        offset[queue[0]] = -w.of[v];
+    }
+    while (!queue.empty()) {
+        std::uint32_t const p = queue.back();
+        queue.pop_back();
+        auto x = std::lower_bound(both.begin(), both.end(), bridge{p, 0, 0});
+        for (; x != both.end() && x->from == p; ++x) {
+            if (known[x->to] != 0) continue;
+            known[x->to] = 1;
+            offset[x->to] = offset[p] + x->step;
+            queue.push_back(x->to);
+        }
+    }
+    threads.for_blocks(vertices, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) w.of[v] += offset[first_part[v / grain] + part_of[v]];
+    });
+}
+
 /// Winding numbers of all vertices: 0 on the walls, changed by crossings. O(vertices + crossings log crossings).
 template <class Executor>
 [[nodiscard]] diagram_winding wind_diagram(voronoi_diagram const& d, surface_pieces const& pieces,
@@ -149,31 +246,7 @@ template <class Executor>
         w.crossed[a] = static_cast<std::uint8_t>(w.crossed[a] | 1U << slot);
         w.crossed[b] = static_cast<std::uint8_t>(w.crossed[b] | 1U << changing_slot(d.keys[b], d.keys[a]));
     }
-    constexpr std::int32_t unknown = std::numeric_limits<std::int32_t>::min();
-    w.of.assign(vertices, unknown);
-    std::vector<std::uint32_t> queue;
-    std::uint32_t const sites = static_cast<std::uint32_t>(d.sites.size());
-    for (std::uint32_t v = 0; v < vertices && queue.empty(); ++v) {
-        if (d.keys[v][3] >= sites) queue.push_back(v);
-    }
-    for (std::uint32_t v : queue) w.of[v] = 0;
-    while (!queue.empty()) {
-        std::uint32_t const v = queue.back();
-        queue.pop_back();
-        for (std::uint32_t s = 0; s < 4; ++s) {
-            std::uint32_t const o = ends[v][s];
-            if (o == no_id || w.of[o] != unknown) continue;
-            std::int32_t value = w.of[v];
-            if ((w.crossed[v] >> s & 1) != 0) {
-                bool const forward = v < o;
-                std::uint64_t const edge = forward ? std::uint64_t{v} * 4 + s
-                                                   : std::uint64_t{o} * 4 + changing_slot(d.keys[o], d.keys[v]);
-                for (edge_crossing const& c : w.on_edge(edge)) value += forward ? c.step : -c.step;
-            }
-            w.of[o] = value;
-            queue.push_back(o);
-        }
-    }
+    flood(d, ends, w, threads);
     return w;
 }
 

@@ -8,6 +8,8 @@
 #include <tafoni/decomposition/detail/loop_measure.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -59,20 +61,22 @@ struct face_cut {
 };
 
 /// All cuts, by face, each taken from the piece in the lower of the two cells. O(cuts log cuts).
-[[nodiscard]] inline std::vector<face_cut> find_cuts(voronoi_diagram const& d, surface_pieces const& pieces) {
-    std::vector<face_cut> cuts;
-    for (std::size_t p = 0; p < pieces.cell.size(); ++p) {
-        std::uint32_t const first = pieces.corner_begin[p];
-        std::uint32_t const last = pieces.corner_begin[p + 1];
-        for (std::uint32_t c = first; c < last; ++c) {
-            std::uint32_t const f = pieces.edges[c];
-            if ((f & surface_pieces::side_bit) != 0 || d.neighbour[f] < pieces.cell[p]) continue;
-            // The face closes the piece's cell: it runs past the piece in the other direction.
-            cuts.push_back({f, {pieces.corners[c + 1 == last ? first : c + 1], pieces.corners[c]}});
-        }
-    }
-    std::sort(cuts.begin(), cuts.end());
-    return cuts;
+template <class Executor>
+[[nodiscard]] std::vector<face_cut> find_cuts(voronoi_diagram const& d, surface_pieces const& pieces, Executor const& threads) {
+    auto blocks = collect_blocks<std::vector<face_cut>>(
+        pieces.cell.size(), 4096, threads, [&](std::size_t begin, std::size_t end, std::vector<face_cut>& cuts) {
+            for (std::size_t p = begin; p < end; ++p) {
+                std::uint32_t const first = pieces.corner_begin[p];
+                std::uint32_t const last = pieces.corner_begin[p + 1];
+                for (std::uint32_t c = first; c < last; ++c) {
+                    std::uint32_t const f = pieces.edges[c];
+                    if ((f & surface_pieces::side_bit) != 0 || d.neighbour[f] < pieces.cell[p]) continue;
+                    // The face closes the piece's cell: it runs past the piece in the other direction.
+                    cuts.push_back({f, {pieces.corners[c + 1 == last ? first : c + 1], pieces.corners[c]}});
+                }
+            }
+        });
+    return sorted_blocks(blocks, threads, [](face_cut const& x, face_cut const& y) { return x < y; });
 }
 
 /// Assembles one face of the diagram after the other; one object per thread.
@@ -149,25 +153,73 @@ private:
             area_[l] = dot(doubled_area(linker_.loop(l), places_), n);
             if (area_[l] >= 0) outlines_.push_back(l);
         }
-        // A hole goes into the smallest outline around it. One without an outline belongs to a surface
-        // that cuts itself and stands alone, as a face of negative area.
-        owner_.assign(loops, loops);
-        for (std::size_t l = 0; l < loops; ++l) {
-            if (area_[l] >= 0) continue;
-            if (outlines_.size() == 1) owner_[l] = outlines_[0];
-            if (outlines_.size() < 2) continue;
-            vec3 const x = places_(linker_.loop(l)[0]);
-            for (std::size_t o : outlines_) {
-                if ((owner_[l] == loops || area_[o] < area_[owner_[l]]) && surrounds(linker_.loop(o), x, n)) owner_[l] = o;
-            }
+        find_owners(n);
+        // Loops by owner: an outline, then its holes, each in their order.
+        first_hole_.assign(loops + 1, loops);
+        next_hole_.resize(loops);
+        for (std::size_t l = loops; l-- > 0;) {
+            if (owner_[l] == loops) continue;
+            next_hole_[l] = first_hole_[owner_[l]];
+            first_hole_[owner_[l]] = l;
         }
         for (std::size_t l = 0; l < loops; ++l) {
             if (owner_[l] != loops) continue;
             append(linker_.loop(l), out);
-            for (std::size_t h = 0; h < loops; ++h) {
-                if (owner_[h] == l) append(linker_.loop(h), out);
-            }
+            for (std::size_t h = first_hole_[l]; h != loops; h = next_hole_[h]) append(linker_.loop(h), out);
             out.close_face(i, j);
+        }
+    }
+
+    /// A hole goes into the smallest outline around it. One without an outline belongs to a surface
+    /// that cuts itself and stands alone, as a face of negative area. O(n log n) for one outline or no
+    /// holes, else a sweep: every hole looks at the outlines that share its place along one axis.
+    void find_owners(vec3 const& n) {
+        std::size_t const loops = linker_.loop_count();
+        owner_.assign(loops, loops);
+        if (outlines_.empty() || outlines_.size() == loops) return;
+        if (outlines_.size() == 1) {
+            for (std::size_t l = 0; l < loops; ++l) owner_[l] = l == outlines_[0] ? loops : outlines_[0];
+            return;
+        }
+        int drop = 2;
+        if (std::fabs(n[1]) > std::fabs(n[drop])) drop = 1;
+        if (std::fabs(n[0]) > std::fabs(n[drop])) drop = 0;
+        int const u = (drop + 1) % 3;
+        int const v = (drop + 2) % 3;
+        range_.resize(loops);
+        order_.clear();
+        for (std::size_t l = 0; l < loops; ++l) {
+            vec3 const p = places_(linker_.loop(l)[0]);
+            range_[l] = {p[v], p[v], p[u], p[u]};
+            order_.push_back(l);
+            if (area_[l] < 0) continue;
+            for (std::uint32_t number : linker_.loop(l)) {
+                vec3 const q = places_(number);
+                range_[l] = {std::min(range_[l][0], q[v]), std::max(range_[l][1], q[v]), std::min(range_[l][2], q[u]),
+                             std::max(range_[l][3], q[u])};
+            }
+        }
+        std::sort(order_.begin(), order_.end(), [this](std::size_t x, std::size_t y) {
+            if (range_[x][0] != range_[y][0]) return range_[x][0] < range_[y][0];
+            bool const hole = area_[x] < 0;
+            return hole != (area_[y] < 0) ? !hole : x < y;
+        });
+        open_.clear();
+        for (std::size_t l : order_) {
+            if (area_[l] >= 0) {
+                open_.push_back(l);
+                continue;
+            }
+            std::size_t kept = 0;
+            for (std::size_t o : open_) {
+                if (range_[o][1] < range_[l][0]) continue;
+                open_[kept++] = o;
+                if (range_[l][2] < range_[o][2] || range_[l][2] > range_[o][3]) continue;
+                std::size_t const best = owner_[l];
+                if (best != loops && (area_[o] != area_[best] ? area_[o] > area_[best] : o > best)) continue;
+                if (surrounds(linker_.loop(o), places_(linker_.loop(l)[0]), u, v)) owner_[l] = o;
+            }
+            open_.resize(kept);
         }
     }
 
@@ -176,13 +228,8 @@ private:
         out.close_loop();
     }
 
-    /// Crossing number along the axis plane in which the face is largest.
-    [[nodiscard]] bool surrounds(std::span<std::uint32_t const> loop, vec3 const& x, vec3 const& n) const {
-        int drop = 2;
-        if (std::fabs(n[1]) > std::fabs(n[drop])) drop = 1;
-        if (std::fabs(n[0]) > std::fabs(n[drop])) drop = 0;
-        int const u = (drop + 1) % 3;
-        int const v = (drop + 2) % 3;
+    /// Crossing number in the plane of the axes u and v.
+    [[nodiscard]] bool surrounds(std::span<std::uint32_t const> loop, vec3 const& x, int u, int v) const {
         bool inside = false;
         vec3 a = places_(loop[loop.size() - 1]);
         for (std::uint32_t number : loop) {
@@ -203,13 +250,18 @@ private:
     std::vector<double> area_{};
     std::vector<std::size_t> outlines_{};
     std::vector<std::size_t> owner_{};
+    std::vector<std::size_t> first_hole_{};
+    std::vector<std::size_t> next_hole_{};
+    std::vector<std::array<double, 4>> range_{};  // of an outline or of a hole's first corner: along v, along u
+    std::vector<std::size_t> order_{};
+    std::vector<std::size_t> open_{};
 };
 
 /// All faces between cells, by the lower cell. O(corners of the diagram + cuts log cuts).
 template <class Executor>
 [[nodiscard]] polygon_set assemble_faces(voronoi_diagram const& d, diagram_winding const& winding,
                                          vertex_places const& places, Executor const& threads) {
-    auto const cuts = find_cuts(d, places.pieces);
+    auto const cuts = find_cuts(d, places.pieces, threads);
     std::uint32_t const sites = static_cast<std::uint32_t>(d.sites.size());
     auto blocks = collect_blocks<polygon_set>(sites, 512, threads, [&](std::size_t begin, std::size_t end, polygon_set& out) {
         face_assembler assemble(d, winding, places);
@@ -237,7 +289,7 @@ template <class Executor>
         blocks[b].face_begin.erase(blocks[b].face_begin.begin());
         blocks[b].loop_begin.erase(blocks[b].loop_begin.begin());
     }
-    require_indexable("voronoi_shards", loops);
+    require_indexable("voronoi_shards", loops + places.pieces.cell.size());
     auto const as_is = [](std::uint32_t x, std::size_t) { return x; };
     gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.front; }, all.front, threads, as_is);
     gather_blocks(blocks, [](polygon_set& b) -> auto& { return b.back; }, all.back, threads, as_is);

@@ -38,14 +38,17 @@ public:
         for (; times < 0; ++times) edges_.push_back({e.to, e.from});
     }
 
-    /// Forms the loops. O(n log n).
+    /// Forms the loops. O(n log n), also where many edges leave one vertex.
     void link() {
         std::sort(edges_.begin(), edges_.end());
-        used_.assign(edges_.size(), 0);
+        next_.resize(edges_.size());
+        place_.assign(edges_.size(), nowhere);
+        for (std::size_t e = 0; e < edges_.size(); ++e) next_[e] = e;
         corners_.clear();
         begin_.assign(1, 0);
         for (std::size_t e = 0; e < edges_.size(); ++e) {
-            if (used_[e] == 0) follow(e);
+            if (e != 0 && edges_[e].from == edges_[e - 1].from) continue;
+            while (has_edge(e)) follow(e);
         }
     }
 
@@ -55,40 +58,44 @@ public:
     }
 
 private:
-    void follow(std::size_t e) {
+    static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+    /// A vertex is named by the first edge that leaves it. Is one of its edges still unused?
+    [[nodiscard]] bool has_edge(std::size_t v) const noexcept {
+        return next_[v] < edges_.size() && edges_[next_[v]].from == edges_[v].from;
+    }
+
+    /// Walks from vertex v until the path has come back and all of it is in loops.
+    void follow(std::size_t v) {
         path_.clear();
         for (;;) {
-            used_[e] = 1;
-            path_.push_back(edges_[e].from);
-            std::uint32_t const head = edges_[e].to;
-            auto next = static_cast<std::size_t>(
-                std::lower_bound(edges_.begin(), edges_.end(), linked_edge{head, 0}) - edges_.begin());
-            // Where the path meets itself, the part in between is a loop of its own. That can happen
-            // at its start, and where several edges leave a vertex.
-            bool const several = next + 1 < edges_.size() && edges_[next + 1].from == head;
-            std::size_t at = path_[0] == head ? 1 : 0;
-            if (several) {
-                at = path_.size();
-                while (at > 0 && path_[at - 1] != head) --at;
-            }
-            if (at > 0) {
-                if (path_.size() - (at - 1) > 2) {
-                    corners_.insert(corners_.end(), path_.begin() + static_cast<std::ptrdiff_t>(at - 1), path_.end());
-                    begin_.push_back(corners_.size());
+            // Where the path meets itself, the part in between is a loop of its own.
+            if (place_[v] != nowhere) {
+                std::size_t const at = place_[v];
+                bool const loop = path_.size() - at > 2;
+                for (std::size_t k = at; k < path_.size(); ++k) {
+                    if (loop) corners_.push_back(edges_[path_[k]].from);
+                    place_[path_[k]] = nowhere;
                 }
-                path_.resize(at - 1);
+                if (loop) begin_.push_back(corners_.size());
+                path_.resize(at);
                 if (path_.empty()) return;
             }
-            while (next < edges_.size() && edges_[next].from == head && used_[next] != 0) ++next;
-            TAFONI_ASSERT(next < edges_.size() && edges_[next].from == head, "every edge has a successor");
-            if (next >= edges_.size() || edges_[next].from != head) return;
-            e = next;
+            TAFONI_ASSERT(has_edge(v), "every edge has a successor");
+            if (!has_edge(v)) break;
+            place_[v] = path_.size();
+            path_.push_back(v);
+            std::uint32_t const head = edges_[next_[v]++].to;
+            v = static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), linked_edge{head, 0}) - edges_.begin());
+            if (v == edges_.size() || edges_[v].from != head) break;
         }
+        for (std::size_t k : path_) place_[k] = nowhere;
     }
 
     std::vector<linked_edge> edges_{};
-    std::vector<std::uint8_t> used_{};
-    std::vector<std::uint32_t> path_{};
+    std::vector<std::size_t> next_{};   // vertex -> its first unused edge
+    std::vector<std::size_t> place_{};  // vertex -> where the path passes it
+    std::vector<std::size_t> path_{};   // vertices
     std::vector<std::uint32_t> corners_{};
     std::vector<std::size_t> begin_{0};
 };

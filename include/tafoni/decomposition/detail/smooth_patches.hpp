@@ -25,27 +25,50 @@ struct patch_map {
 /// most `angle` degrees; with 0 every polygon is a patch of its own. Normals are area vectors, scaled
 /// by a power of two, so patches do not depend on place or scale. Patches are numbered by their
 /// lowest polygon. O(polygons).
-[[nodiscard]] inline patch_map smooth_patches(solid const& body, double angle) {
+template <class Executor>
+[[nodiscard]] patch_map smooth_patches(solid const& body, double angle, Executor const& threads) {
     std::vector<vec3> normals(body.polygon_count, vec3{0, 0, 0});
     std::vector<std::uint32_t> parent(body.polygon_count);
     for (std::uint32_t p = 0; p < parent.size(); ++p) parent[p] = p;
-    int exponent = 0;
-    (void)std::frexp(body.bounds.diagonal(), &exponent);
-    for (std::size_t t = 0; t < body.triangles.size(); ++t) {
-        vec3 const& a = body.positions[body.triangles[t][0]];
-        vec3 const& b = body.positions[body.triangles[t][1]];
-        vec3 const& c = body.positions[body.triangles[t][2]];
-        vec3 u{0, 0, 0};
-        vec3 v{0, 0, 0};
-        for (int k = 0; k < 3; ++k) {
-            u[k] = std::ldexp(b[k] - a[k], -exponent);
-            v[k] = std::ldexp(c[k] - a[k], -exponent);
+    auto const artificial = [&body](std::uint32_t p) { return !body.artificial.empty() && body.artificial[p] != 0; };
+    std::vector<std::uint8_t> smooth;  // half-edge -> the patch goes on across it
+    if (angle > 0) {
+        int exponent = 0;
+        (void)std::frexp(body.bounds.diagonal(), &exponent);
+        double const scale = std::ldexp(1.0, -exponent);
+        std::vector<vec3> areas(body.triangles.size());
+        threads.for_blocks(areas.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                vec3 const& a = body.positions[body.triangles[t][0]];
+                vec3 const& b = body.positions[body.triangles[t][1]];
+                vec3 const& c = body.positions[body.triangles[t][2]];
+                vec3 u{0, 0, 0};
+                vec3 v{0, 0, 0};
+                for (int k = 0; k < 3; ++k) {
+                    u[k] = (b[k] - a[k]) * scale;
+                    v[k] = (c[k] - a[k]) * scale;
+                }
+                areas[t] = cross(u, v);
+            }
+        });
+        for (std::size_t t = 0; t < areas.size(); ++t) {
+            vec3& sum = normals[body.polygon_of[t]];
+            sum = vec3{sum[0] + areas[t][0], sum[1] + areas[t][1], sum[2] + areas[t][2]};
         }
-        vec3 const n = cross(u, v);
-        vec3& sum = normals[body.polygon_of[t]];
-        sum = vec3{sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]};
+        threads.for_blocks(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) normals[p] = normalized(normals[p]);
+        });
+        double const least = elementary::cos(angle * 0x1.1df46a2529d39p-6) - 1e-12;  // pi / 180; the angle itself counts
+        smooth.resize(body.opposite.size());
+        threads.for_blocks(smooth.size(), 16384, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t h = begin; h < end; ++h) {
+                std::uint32_t const p = body.polygon_of[h / 3];
+                std::uint32_t const q = body.polygon_of[body.opposite[h] / 3];
+                bool const on = p < q && !artificial(p) && !artificial(q) && dot(normals[p], normals[q]) >= least;
+                smooth[h] = on ? 1 : 0;
+            }
+        });
     }
-    for (vec3& n : normals) n = normalized(n);
     auto const root = [&parent](std::uint32_t x) {
         while (parent[x] != x) {
             parent[x] = parent[parent[x]];
@@ -53,17 +76,11 @@ struct patch_map {
         }
         return x;
     };
-    double const least = elementary::cos(angle * 0x1.1df46a2529d39p-6) - 1e-12;  // pi / 180; the angle itself counts
-    auto const artificial = [&body](std::uint32_t p) { return !body.artificial.empty() && body.artificial[p] != 0; };
-    if (angle > 0) {
-        for (std::size_t h = 0; h < body.opposite.size(); ++h) {
-            std::uint32_t const p = body.polygon_of[h / 3];
-            std::uint32_t const q = body.polygon_of[body.opposite[h] / 3];
-            if (p >= q || artificial(p) || artificial(q) || dot(normals[p], normals[q]) < least) continue;
-            std::uint32_t const a = root(p);
-            std::uint32_t const b = root(q);
-            parent[a < b ? b : a] = a < b ? a : b;
-        }
+    for (std::size_t h = 0; h < smooth.size(); ++h) {
+        if (smooth[h] == 0) continue;
+        std::uint32_t const a = root(body.polygon_of[h / 3]);
+        std::uint32_t const b = root(body.polygon_of[body.opposite[h] / 3]);
+        parent[a < b ? b : a] = a < b ? a : b;
     }
     patch_map map;
     map.of.resize(body.polygon_count);

@@ -7,8 +7,10 @@
 #include <tafoni/decomposition/detail/collect_blocks.hpp>
 #include <tafoni/decomposition/detail/surface_signs.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
@@ -25,11 +27,24 @@ struct surface_walk {
 
     std::vector<std::uint32_t> cell_of{};      ///< vertex -> cell; none for vertices without faces
     std::vector<std::uint32_t> step_begin{};   ///< half-edge -> first step; one past the last at the end
-    std::vector<step> steps{};                 ///< in order along the half-edge
+    std::vector<step> steps{};                 ///< by half-edge; of many steps sorted by their cells, else along it
     std::vector<vec3> points{};                ///< per step, lattice units
 
-    /// The step of edge `h` between two cells, which must be there. O(steps of the edge).
+    /// So many steps are looked through one after the other.
+    static constexpr std::size_t few = 16;
+
+    /// Cells in ascending order: an edge passes between two of them once at most.
+    [[nodiscard]] static std::pair<std::uint32_t, std::uint32_t> cells(step const& s) noexcept {
+        return s.from < s.to ? std::pair{s.from, s.to} : std::pair{s.to, s.from};
+    }
+
+    /// The step of edge `h` between two cells, which must be there. O(log steps of the edge).
     [[nodiscard]] std::uint32_t step_between(std::size_t h, std::uint32_t a, std::uint32_t b) const noexcept {
+        if (step_begin[h + 1] - step_begin[h] > few) {
+            auto const at = std::lower_bound(steps.begin() + step_begin[h], steps.begin() + step_begin[h + 1], cells({a, b}),
+                                             [](step const& s, auto const& key) { return cells(s) < key; });
+            return static_cast<std::uint32_t>(at - steps.begin());
+        }
         for (std::uint32_t s = step_begin[h]; s < step_begin[h + 1]; ++s) {
             if ((steps[s].from == a && steps[s].to == b) || (steps[s].from == b && steps[s].to == a)) return s;
         }
@@ -84,6 +99,7 @@ inline void walk_edge(surface_signs const& signs, solid const& body, std::vector
     ivec3 const& pa = signs.points[a];
     ivec3 const& pb = signs.points[b];
     std::uint32_t previous = no_id;
+    std::size_t const first = steps.size();
     for (std::uint32_t c = cell_of[a]; c != cell_of[b];) {
         std::uint32_t next = no_id;
         for (std::uint32_t f = d.face_begin[c]; f < d.face_begin[c + 1]; ++f) {
@@ -94,13 +110,20 @@ inline void walk_edge(surface_signs const& signs, solid const& body, std::vector
         }
         TAFONI_ASSERT(next != no_id, "an edge leaves every cell that does not hold its end");
         steps.push_back({c, next});
-        points.push_back(point_on_edge(d.sites[c < next ? c : next], d.sites[c < next ? next : c], pa, pb));
         previous = c;
         c = next;
     }
+    if (steps.size() - first > surface_walk::few) {
+        std::sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),
+                  [](auto const& x, auto const& y) { return surface_walk::cells(x) < surface_walk::cells(y); });
+    }
+    for (std::size_t s = first; s < steps.size(); ++s) {
+        auto const [low, high] = surface_walk::cells(steps[s]);
+        points.push_back(point_on_edge(d.sites[low], d.sites[high], pa, pb));
+    }
 }
 
-/// Locates all vertices and walks along all edges. O(vertices + edges + cells met), exact.
+/// Locates all vertices and walks along all edges. O(vertices + edges + k log k) for k faces of cells met, exact.
 template <class Executor>
 [[nodiscard]] surface_walk walk_surface(surface_signs const& signs, solid const& body, Executor const& threads) {
     surface_walk walk;
