@@ -9,7 +9,6 @@
 #include <tafoni/core/run_context.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/decomposition/detail/assemble_diagram.hpp>
-#include <tafoni/decomposition/detail/cell_block.hpp>
 #include <tafoni/decomposition/detail/site_tree.hpp>
 #include <tafoni/geometry/lattice.hpp>
 

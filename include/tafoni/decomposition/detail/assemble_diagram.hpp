@@ -5,7 +5,7 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/core/run_context.hpp>
-#include <tafoni/decomposition/detail/cell_block.hpp>
+#include <tafoni/decomposition/detail/cell_builder.hpp>
 #include <tafoni/decomposition/detail/site_tree.hpp>
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,61 +27,59 @@ struct block_offset {
     std::size_t vertex = 0;
 };
 
-/// Resolves the corners of a block's cells to vertices of the diagram and writes its faces. A vertex
-/// is found among those of its lowest site by its key. O(corners).
+/// Writes the faces of a block. A vertex of an earlier block is found among those of its lowest site by
+/// its key. O(corners).
 template <class Diagram>
 void write_faces(Diagram& d, cell_block const& block, block_offset at, std::vector<std::uint32_t> const& vertex_begin,
-                 std::vector<std::uint32_t>& global) {
+                 std::vector<std::uint32_t>& borrowed) {
+    borrowed.resize(block.borrowed.size());
+    for (std::size_t k = 0; k < borrowed.size(); ++k) {
+        vertex_key const& key = block.borrowed[k];
+        auto const* first = d.keys.data() + vertex_begin[key[0]];
+        auto const* last = d.keys.data() + vertex_begin[key[0] + 1];
+        if (last - first > 16) {
+            first = std::lower_bound(first, last, key);
+        } else {
+            while (first != last && (((*first)[1] ^ key[1]) | ((*first)[2] ^ key[2]) | ((*first)[3] ^ key[3])) != 0) ++first;
+        }
+        TAFONI_ASSERT(first != last && *first == key, "cells agree on their vertices");
+        borrowed[k] = static_cast<std::uint32_t>(first - d.keys.data());
+    }
+    auto const base = static_cast<std::uint32_t>(at.vertex);
+    auto const global = [&](std::uint32_t place) {
+        return place < cell_block::elsewhere ? base + place : borrowed[place - cell_block::elsewhere];
+    };
+    std::copy(block.neighbour.begin(), block.neighbour.end(), d.neighbour.begin() + static_cast<std::ptrdiff_t>(at.face));
     std::size_t small = 0;
     std::size_t large = 0;
     std::size_t face = 0;
-    auto cell = static_cast<std::uint32_t>(at.cell);
-    auto const write = [&](cell_block::cell const& c, auto const* list) {
-        std::uint32_t const* ids = block.neighbour.data() + face;
-        auto const* triples = list + c.corners;
-        global.resize(c.vertices);
-        for (std::uint32_t v = 0; v < c.vertices; ++v) {
-            std::uint32_t const i = ids[triples[3 * v]];
-            std::uint32_t const j = ids[triples[3 * v + 1]];
-            std::uint32_t const k = ids[triples[3 * v + 2]];
-            vertex_key const key{std::min(cell, i), std::max(std::min(cell, j), i), std::max(std::min(cell, k), j),
-                                 std::max(cell, k)};
-            auto const* first = d.keys.data() + vertex_begin[key[0]];
-            auto const* last = d.keys.data() + vertex_begin[key[0] + 1];
-            if (last - first > 16) {
-                first = std::lower_bound(first, last, key);
-            } else {
-                while (first != last && (((*first)[1] ^ key[1]) | ((*first)[2] ^ key[2]) | ((*first)[3] ^ key[3])) != 0) ++first;
-            }
-            TAFONI_ASSERT(first != last && *first == key, "cells agree on their vertices");
-            global[v] = static_cast<std::uint32_t>(first - d.keys.data());
-        }
-        for (std::uint32_t f = 0; f < c.faces; ++f, ++face) {
-            d.neighbour[at.face + face] = ids[f];
-            d.corner_begin[at.face + face] = static_cast<std::uint32_t>(at.corner);
-            std::uint32_t const degree = block.degree[face];
-            std::uint32_t lowest = 0;
-            for (std::uint32_t k = 1; k < degree; ++k) {
-                if (global[list[k]] < global[list[lowest]]) lowest = k;
-            }
-            for (std::uint32_t k = 0; k < degree; ++k) {
-                std::uint32_t const from = k + lowest < degree ? k + lowest : k + lowest - degree;
-                d.corners[at.corner + k] = global[list[from]];
-            }
-            at.corner += degree;
-            list += degree;
-        }
-        ++cell;
-    };
+    std::uint32_t const* vertex = block.vertex.data();
+    std::size_t cell = at.cell;
     for (auto const& c : block.cells) {
-        d.face_begin[cell] = static_cast<std::uint32_t>(at.face + face);
+        d.face_begin[cell++] = static_cast<std::uint32_t>(at.face + face);
+        auto const write = [&](auto const* list) {
+            for (std::uint32_t f = 0; f < c.faces; ++f, ++face) {
+                d.corner_begin[at.face + face] = static_cast<std::uint32_t>(at.corner);
+                std::uint32_t const degree = block.degree[face];
+                std::uint32_t* const to = d.corners.data() + at.corner;
+                std::uint32_t lowest = 0;
+                for (std::uint32_t k = 0; k < degree; ++k) {
+                    to[k] = global(vertex[list[k]]);
+                    if (to[k] < to[lowest]) lowest = k;
+                }
+                std::rotate(to, to + lowest, to + degree);
+                at.corner += degree;
+                list += degree;
+            }
+        };
         if (c.vertices <= 255) {
-            write(c, block.corner_small.data() + small);
-            small += c.corners + 3 * std::size_t{c.vertices};
+            write(block.corner_small.data() + small);
+            small += c.corners;
         } else {
-            write(c, block.corner_large.data() + large);
-            large += c.corners + 3 * std::size_t{c.vertices};
+            write(block.corner_large.data() + large);
+            large += c.corners;
         }
+        vertex += c.vertices;
     }
 }
 
@@ -97,11 +96,12 @@ void make_room(std::vector<T>& list, std::size_t size, double share_done) {
 /// runs before it are: only one run is held besides the result.
 template <class Diagram, class Executor>
 void assemble_diagram(Diagram& d, Executor const& pool, run_context const& context) {
-    constexpr std::size_t leaves_per_block = 16;
-    constexpr std::size_t blocks_per_run = 64;
+    constexpr std::size_t blocks_per_run = 32;
     site_tree const tree(d.sites);
     lattice_box const box{d.box_lo, d.box_hi};
     std::size_t const leaves = tree.leaves.size();
+    // The larger a block, the more its cells know of each other; the smaller, the better threads share it.
+    std::size_t const leaves_per_block = std::clamp(leaves / 24, std::size_t{8}, std::size_t{128});
     std::size_t const block_count = (leaves + leaves_per_block - 1) / leaves_per_block;
     std::size_t const run_blocks = std::min(blocks_per_run, block_count);
     std::vector<cell_block> blocks(run_blocks);
@@ -113,14 +113,14 @@ void assemble_diagram(Diagram& d, Executor const& pool, run_context const& conte
     for (std::size_t done = 0; done < block_count; done += run_blocks) {
         context.tick("voronoi cells", static_cast<double>(done) / static_cast<double>(block_count));
         std::size_t const todo = std::min(run_blocks, block_count - done);
-        pool.for_blocks(todo, 4, [&](std::size_t b, std::size_t e) {
+        pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
             // Scratch memory outlives the run; a range of blocks always begins at the same one.
             if (!builders[b]) builders[b] = std::make_unique<cell_builder>(d.sites, tree, box);
             for (std::size_t k = b; k < e; ++k) {
                 blocks[k].clear();
                 std::size_t const first = (done + k) * leaves_per_block;
                 std::size_t const stop = std::min(leaves, first + leaves_per_block);
-                for (std::size_t l = first; l < stop; ++l) builders[b]->build_leaf(tree.leaves[l], blocks[k]);
+                builders[b]->build(std::span(tree.leaves).subspan(first, stop - first), blocks[k]);
             }
         });
 
@@ -153,9 +153,9 @@ void assemble_diagram(Diagram& d, Executor const& pool, run_context const& conte
             std::copy(blocks[k].own_key.begin(), blocks[k].own_key.end(), d.keys.begin() + to);
             std::copy(blocks[k].own_position.begin(), blocks[k].own_position.end(), d.vertices.begin() + to);
         }
-        pool.for_blocks(todo, 4, [&](std::size_t b, std::size_t e) {
-            std::vector<std::uint32_t> global;
-            for (std::size_t k = b; k < e; ++k) write_faces(d, blocks[k], offset[k], vertex_begin, global);
+        pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
+            std::vector<std::uint32_t> borrowed;
+            for (std::size_t k = b; k < e; ++k) write_faces(d, blocks[k], offset[k], vertex_begin, borrowed);
         });
         offset[0] = total;
     }
