@@ -210,3 +210,17 @@ TEST_CASE("an exception from a worker thread reaches the caller and loses nothin
     }
     CHECK(thrown);
 }
+
+TEST_CASE("the report tells the time of each stage") {
+    box_network const n(5, 5, 5);
+    auto const preset = paper_preset();
+    frost_run run(n, preset.process, preset.options);
+    auto const r = run.run({.paths = 2000, .batch = 100});
+    CHECK(r.cells_detached > 0);
+    CHECK(r.seconds.walk > 0);
+    CHECK(r.seconds.detach > 0);
+    CHECK(r.seconds.walk + r.seconds.detach <= r.seconds.run);
+    run.reset();
+    CHECK(run.report().seconds.walk == 0);
+    CHECK(run.run({.paths = 100}).seconds.walk > 0);  // one by one: an estimate
+}

@@ -72,7 +72,8 @@ struct frost_report {
     double water_drained = 0;               ///< left where no way led on
     double volume_detached = 0;             ///< cubed length unit
     struct stage_seconds {
-        double run = 0;     ///< all of `run`
+        double run = 0;     ///< all of `run`; what the other two leave is wear and books
+        double walk = 0;    ///< water on its way; in batches of less than 16 estimated from one in 16
         double detach = 0;  ///< connectivity, falling parts and exposure
     } seconds{};
     stop_reason stopped = stop_reason::finished;  ///< of the last `run`

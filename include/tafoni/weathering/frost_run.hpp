@@ -97,7 +97,7 @@ public:
     /// Totals since the start. O(1).
     [[nodiscard]] frost_report report() const noexcept {
         frost_report r = core_.state.report();
-        r.seconds = {.run = seconds_.run, .detach = core_.detach_seconds};
+        r.seconds = {.run = seconds_.run, .walk = core_.walk_seconds, .detach = core_.detach_seconds};
         r.stopped = stopped_;
         return r;
     }
@@ -212,6 +212,7 @@ public:
         core_.state.reset();
         std::fill(core_.states.begin(), core_.states.end(), link_state::bonded);
         seconds_ = {};
+        core_.walk_seconds = 0;
         core_.detach_seconds = 0;
         stopped_ = stop_reason::finished;
         core_.rebuild();
@@ -249,6 +250,7 @@ public:
     void resume(std::span<std::byte const> bytes) {
         detail::read_checkpoint(core_, bytes);
         seconds_ = {};
+        core_.walk_seconds = 0;
         core_.detach_seconds = 0;
     }
 

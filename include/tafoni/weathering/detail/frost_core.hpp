@@ -10,6 +10,7 @@
 #include <tafoni/percolation/link_table.hpp>
 #include <tafoni/percolation/percolate.hpp>
 #include <tafoni/weathering/detail/frost_state.hpp>
+#include <tafoni/weathering/detail/process_parts.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
 
 #include <algorithm>
@@ -20,34 +21,6 @@
 #include <vector>
 
 namespace tafoni::detail {
-
-/// The infiltration that comes with a rain, else the paper's.
-template <class Rain>
-[[nodiscard]] auto const& infiltration_of(Rain const& rain) noexcept {
-    if constexpr (infiltration_policy<Rain>) {
-        return rain;
-    } else {
-        static constexpr facing_infiltration facing{};
-        return facing;
-    }
-}
-
-/// The soaking that comes with an absorption, else the paper's.
-template <class Absorb>
-[[nodiscard]] auto const& soaking_of(Absorb const& absorb) noexcept {
-    if constexpr (soaking_rule<Absorb>) {
-        return absorb;
-    } else {
-        static constexpr depletion_soaking depletion{};
-        return depletion;
-    }
-}
-
-/// Whether the rule lets parts with core cells stand, so that searches may stop where both sides have one.
-template <class Wear>
-inline constexpr bool cores_stand = false;
-template <class Damage, class Breakage>
-inline constexpr bool cores_stand<wear<Damage, Breakage, smaller_part_falls>> = true;
 
 /// State and derived structures of `frost_run`, whose members document them.
 template <class Network, class Process, class Exposure>
@@ -71,6 +44,7 @@ public:
     std::vector<link_state> states;  ///< per link; the table holds a copy beside what the walk reads
     entry_tree skin{};
     connectivity bonds{};
+    double walk_seconds = 0;
     double detach_seconds = 0;
     bool dirty = false;  ///< derived structures do not follow the state; `rebuild` mends it
 
@@ -161,10 +135,16 @@ public:
                 traces_[k] = percolate(table, skin, policy, number, first + k, g.visits, g.memory);
             }
         };
+        bool const timed = n >= sample || first % sample == 0;
+        auto const start = timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point{};
         if (groups == 1) {
             walk(0, n);
         } else {
             threads.for_blocks(n, grain, walk);
+        }
+        if (timed) {
+            double const taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            walk_seconds += n >= sample ? taken : static_cast<double>(sample) * taken;
         }
         transact([&] {
             for (std::size_t k = 0, at = 0; k < n; ++k) {
@@ -334,6 +314,9 @@ private:
         bool falls = false;
     };
 
+    static constexpr std::size_t ahead = 6;     ///< visits whose records are asked for before they are worn
+    static constexpr std::uint64_t sample = 16;  ///< of so many small steps one is timed
+
     /// Books one path and wears its bonds.
     void apply(std::uint64_t path, path_trace const& trace, std::span<path_visit const> visits) {
         frost_counters& count = state.count;
@@ -346,7 +329,9 @@ private:
         count.water.drained += trace.drained;
         count.traversed += visits.size();
         stream random(options.seed, stage::breakage, path);
-        for (path_visit const& v : visits) {
+        for (std::size_t k = 0; k < visits.size(); ++k) {
+            if (k + ahead < visits.size()) __builtin_prefetch(&table[visits[k + ahead].link]);
+            path_visit const& v = visits[k];
             link_record& r = table[v.link];
             if (v.state != link_state::bonded) {
                 count.water.absorbed += v.absorbed;
