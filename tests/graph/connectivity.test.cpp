@@ -355,3 +355,76 @@ TEST_CASE("what is left of cells and bonds restores connectivity") {
     REQUIRE_FALSE(snapshot.is_core(cell_index{1U}));
     REQUIRE_THROWS_AS(connectivity(m.net, std::span{states}.first(1), [](link_index) { return true; }), invalid_input);
 }
+
+namespace {
+
+/// A hub bonded to every cell of a ring: the last cell is the hub, links 0 .. n-1 its spokes, the rest the ring.
+struct wheel {
+    std::uint32_t n;
+    std::size_t cell_count() const { return n + 1; }
+    double cell_volume(cell_index) const { return 1; }
+    std::size_t link_count() const { return 2 * std::size_t{n}; }
+    bool has_link(link_index) const { return true; }
+    std::array<cell_index, 2> link_cells(link_index l) const {
+        if (l.value < n) return {cell_index{n}, cell_index{l.value}};
+        return {cell_index{l.value - n}, cell_index{(l.value - n + 1) % n}};
+    }
+    double link_area(link_index) const { return 1; }
+    vec3 link_centroid(link_index) const { return {0, 0, 0}; }
+    vec3 link_normal(link_index) const { return {0, 0, 1}; }
+    void for_each_cell_link(cell_index c, auto&& f) const {
+        if (c.value == n) {
+            for (std::uint32_t l = 0; l < n; ++l) f(link_index{l});
+            return;
+        }
+        f(link_index{c.value});
+        f(link_index{n + c.value});
+        f(link_index{n + (c.value + n - 1) % n});
+    }
+    void for_each_neighbor(link_index, auto&&) const {}
+};
+
+/// Two cells with two bonds between them.
+struct twins {
+    std::size_t cell_count() const { return 2; }
+    double cell_volume(cell_index) const { return 1; }
+    std::size_t link_count() const { return 2; }
+    bool has_link(link_index) const { return true; }
+    std::array<cell_index, 2> link_cells(link_index) const { return {cell_index{0U}, cell_index{1U}}; }
+    double link_area(link_index) const { return 1; }
+    vec3 link_centroid(link_index) const { return {0, 0, 0}; }
+    vec3 link_normal(link_index) const { return {0, 0, 1}; }
+    void for_each_cell_link(cell_index, auto&& f) const {
+        f(link_index{0U});
+        f(link_index{1U});
+    }
+    void for_each_neighbor(link_index, auto&&) const {}
+};
+
+}  // namespace
+
+TEST_CASE("a cell with fifty thousand bonds comes off when the last of them breaks") {
+    wheel const w{50000};
+    connectivity c(w);
+    std::size_t parted = 0;
+    for (std::uint32_t l = 0; l + 1 < w.n; ++l) parted += c.break_link(w, link_index{l}).has_value() ? 1U : 0U;
+    CHECK(parted == 0);  // the ring holds its cells, the last spoke the hub
+    CHECK(c.is_bonded(w, link_index{w.n - 1}));
+    auto const last = c.break_link(w, link_index{w.n - 1});
+    REQUIRE(last.has_value());
+    CHECK(c.cells_in(last->components[0]) == 1);
+    CHECK(c.cells_in(last->components[1]) == w.n);
+    CHECK_FALSE(c.break_link(w, link_index{w.n - 1}).has_value());
+    CHECK_FALSE(c.is_bonded(w, link_index{0U}));
+}
+
+TEST_CASE("of two bonds between the same cells each is known by itself") {
+    twins const twin{};
+    connectivity c(twin);
+    CHECK_FALSE(c.break_link(twin, link_index{1U}).has_value());
+    CHECK(c.is_bonded(twin, link_index{0U}));
+    CHECK_FALSE(c.is_bonded(twin, link_index{1U}));
+    CHECK_FALSE(c.break_link(twin, link_index{1U}).has_value());  // no second time
+    CHECK(c.is_bonded(twin, link_index{0U}));
+    CHECK(c.break_link(twin, link_index{0U}).has_value());
+}

@@ -56,12 +56,14 @@ template <class Network, class Process, class Exposure>
     h.add(core.options.seed);
     h.add(static_cast<std::uint64_t>(core.options.mean));
     h.add(static_cast<std::uint64_t>(core.options.longest_path));
-    visit_policies(core.process, [&h](auto const& policy) {
+    auto const add = [&h](auto const& policy) {
         if constexpr (requires { policy.parameters(); }) {
             for (double const v : policy.parameters()) h.add(v);
         }
         h.add(std::uint64_t{0x5EA});
-    });
+    };
+    visit_policies(core.process, add);
+    if constexpr (requires { core.exposure.parameters(); }) add(core.exposure);
     for (std::size_t i = 0; i < core.table.size(); ++i) h.add(core.table[link_index{i}].resistance);
     return h.value();
 }

@@ -36,7 +36,7 @@ public:
     /// \throws invalid_input  for policies or options out of range, a resistance outside [0, 1], or a
     ///                        network whose areas, centroids or volumes are not finite and positive.
     explicit frost_run(Network const& network, Process process = {}, frost_options options = {}, Exposure exposure = {})
-        : core_(network, checked(std::move(process)), checked(options), std::move(exposure)) {}
+        : core_(network, checked(std::move(process)), checked(options), checked(std::move(exposure))) {}
     explicit frost_run(Network const&&, Process = {}, frost_options = {}, Exposure = {}) = delete;
 
     /// Adds `schedule.paths` paths.
@@ -255,9 +255,10 @@ public:
     }
 
 private:
-    static Process checked(Process process) {
-        detail::validate_policies(process);
-        return process;
+    template <class Policy>
+    static Policy checked(Policy policy) {
+        detail::validate_policies(policy);
+        return policy;
     }
     static frost_options checked(frost_options const& options) {
         options.validate();
