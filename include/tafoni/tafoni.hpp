@@ -19,6 +19,7 @@
 #include <tafoni/decomposition/given_sites.hpp>
 #include <tafoni/decomposition/grid_sites.hpp>
 #include <tafoni/decomposition/hexagonal_sites.hpp>
+#include <tafoni/decomposition/joint_sites.hpp>
 #include <tafoni/decomposition/locate.hpp>
 #include <tafoni/decomposition/poisson_sites.hpp>
 #include <tafoni/decomposition/random_sites.hpp>
