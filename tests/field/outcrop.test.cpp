@@ -3,6 +3,7 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/geometry/inside_columns.hpp>
 #include <tafoni/geometry/make_solid.hpp>
+#include <tafoni/geometry/self_intersections.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -17,6 +18,7 @@ TEST_CASE("the outcrop is a closed solid that stands on the ground and overhangs
             CHECK(s.bounds.lo[2] == 0);
             CHECK(s.bounds.hi[2] > 4);
             CHECK(mesh == make_outcrop(seed, resolution));
+            CHECK(self_intersections(s).empty());
             if (resolution < 24) continue;
             // Winding numbers of an embedded solid are 0 and 1.
             inside_columns const rock(s);
@@ -37,6 +39,25 @@ TEST_CASE("the outcrop is a closed solid that stands on the ground and overhangs
             CHECK(overhangs > 20);
         }
     }
+}
+
+TEST_CASE("the outcrop has flat ledges and upright walls, and little in between") {
+    solid const s = make_solid(make_outcrop(2, 40));
+    vec3 const bedding = normalized(vec3{-0.13, 0.05, 1});
+    double ledges = 0;
+    double walls = 0;
+    double all = 0;
+    for (auto const& t : s.triangles) {
+        vec3 const n = cross(vec3(s.positions[t[1]] - s.positions[t[0]]), vec3(s.positions[t[2]] - s.positions[t[0]]));
+        double const area = length(n);
+        double const up = std::fabs(dot(n, bedding)) / area;
+        all += area;
+        ledges += up > 0.9 ? area : 0;
+        walls += up < 0.35 ? area : 0;
+    }
+    CHECK(ledges > 0.25 * all);
+    CHECK(walls > 0.35 * all);
+    CHECK(ledges + walls > 0.85 * all);
 }
 
 TEST_CASE("outcrops differ by seed and refuse absurd resolutions") {

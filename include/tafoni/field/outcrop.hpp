@@ -1,5 +1,5 @@
 /// \file
-/// A rock that needs no file: an outcrop with ledges and an overhanging front.
+/// A rock that needs no file: a tor of bedded, jointed rock with ledges and an overhanging front.
 #ifndef TAFONI_FIELD_OUTCROP_HPP
 #define TAFONI_FIELD_OUTCROP_HPP
 
@@ -9,117 +9,273 @@
 #include <tafoni/geometry/indexed_mesh.hpp>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace tafoni {
 
 namespace detail {
 
-/// Radius and height over the half-planes around the axis x = y = 0, in metres.
-///
-/// In every half-plane the flank is a graph over the height and the top a graph over the radius, no
-/// lower than the rim where they meet: so the surface cannot cut itself.
-struct outcrop_shape {
-    fractal_noise relief;  // blocks and cracks of the flank
-    fractal_noise bedding;  // where the beds begin
-    fractal_noise crown;   // the top
-    fractal_noise joints;  // upright clefts
+/// A joint plane, upright: the points p with n . p = distance, n horizontal and of unit length.
+struct outcrop_joint {
+    vec3 normal{1, 0, 0};
+    double distance = 1;
+};
 
-    explicit outcrop_shape(std::uint64_t seed)
-        : relief{.seed = seed, .frequency = 0.28, .octaves = 5, .gain = 0.45},
-          bedding{.seed = seed + 1, .frequency = 0.25, .octaves = 2},
-          crown{.seed = seed + 2, .frequency = 0.6, .octaves = 4},
-          joints{.seed = seed + 3, .frequency = 0.45, .octaves = 2} {}
+/// By the angle from +x, 0 to one turn, without computing it; horizontal directions.
+[[nodiscard]] inline bool earlier_around(vec3 const& a, vec3 const& b) noexcept {
+    auto const half = [](vec3 const& p) { return p[1] > 0 || (p[1] == 0 && p[0] > 0) ? 0 : 1; };
+    if (half(a) != half(b)) return half(a) < half(b);
+    return a[0] * b[1] - a[1] * b[0] > 0;
+}
 
-    [[nodiscard]] static double smooth(double t) noexcept {
-        t = std::clamp(t, 0.0, 1.0);
-        return t * t * (3 - 2 * t);
+/// An upright cleft; the rock behind it, anticlockwise up to the next one, stands out or back.
+struct outcrop_cleft {
+    static constexpr double half_width = 0.014;  // radians around the axis
+    vec3 out{1, 0, 0};
+    double step = 0;  ///< m
+};
+
+/// A bed: the union of blocks, each the convex piece within its joints, all around the axis x = y = 0.
+struct outcrop_bed {
+    static constexpr std::size_t sides = 5;
+    std::array<std::array<outcrop_joint, sides>, 3> blocks{};
+    std::vector<outcrop_cleft> clefts{};  ///< in order around the axis, at least one
+    double bottom = 0;  ///< m
+    double top = 0;     ///< m
+    double batter = 0;  ///< relative growth of the outline per metre of height
+
+    /// Distance from the axis to the outline with its clefts, seen along the horizontal unit vector `out`.
+    [[nodiscard]] double reach(vec3 const& out) const noexcept {
+        double step = clefts.back().step;
+        for (outcrop_cleft const& c : clefts) {
+            if (squared_length(vec3{out - c.out}) < 0.25 * c.half_width * c.half_width) return joints(out) + step - 0.14;
+            if (earlier_around(c.out, out)) step = c.step;
+        }
+        return joints(out) + step;
     }
 
-    /// Height of the rim, 3.4 to 4.6 m: the outcrop is higher at its front (-y) than at its back.
-    [[nodiscard]] double rim(vec3 const& out) const noexcept {
-        return 4.0 - 0.3 * out[1] + 0.25 * crown(vec3{2 * out[0], 2 * out[1], 0});
+    /// The same without the clefts.
+    [[nodiscard]] double joints(vec3 const& out) const noexcept {
+        double r = 0;
+        for (auto const& block : blocks) {
+            double least = 1e300;
+            for (outcrop_joint const& j : block) {
+                double const c = dot(j.normal, out);
+                if (c > 1e-9) least = std::min(least, j.distance / c);
+            }
+            r = std::max(r, least);
+        }
+        return r;
+    }
+};
+
+/// What the outcrop of a seed is built from.
+class outcrop_plan {
+public:
+    static constexpr double height = 4.6;  // m
+
+    explicit outcrop_plan(std::uint64_t seed) : seed_(seed) {
+        stream random(seed, stage::user, 0);
+        double const strike = random.uniform(-0.35, -0.15);
+        std::array<std::array<double, outcrop_bed::sides>, 3> share{};
+        for (auto& block : share) {
+            for (double& s : block) s = random.uniform(0.58, 0.95);
+        }
+        // Every side is reached by one block at least.
+        for (std::size_t side = 0; side < outcrop_bed::sides; ++side) share[side % 3][side] = 1;
+        double z = 0;
+        for (std::size_t k = 0; z < height; ++k) {
+            outcrop_bed bed;
+            bed.bottom = z;
+            // Thick beds with thin ones between them, which stand back.
+            bool const soft = k % 3 == 1;
+            z += soft ? random.uniform(0.2, 0.34) : random.uniform(k == 0 ? 0.75 : 0.42, 1.1);  // above 0.7 the tilt is even, see bent()
+            if (z > height - 0.3) z = height;
+            bed.top = z;
+            double const crown = z < height ? 1 : 0.72;
+            bed.batter = random.uniform(-0.08, 0.05);
+            double const turn = strike + random.uniform(-0.06, 0.06);
+            for (std::size_t b = 0; b < 3; ++b) {
+                for (std::size_t side = 0; side < outcrop_bed::sides; ++side) {
+                    double const far = crown * share[b][side] * random.uniform(0.88, 1.08) - (soft ? 0.1 : 0);
+                    bed.blocks[b][side] = joint(side, b, (bed.bottom + bed.top) / (2 * height), turn, far);
+                }
+            }
+            for (std::size_t c = soft ? 2 : 7; c > 0; --c) {
+                double const angle = random.uniform(-3.141592653589793, 3.141592653589793);
+                double const step = random.uniform(-0.2, 0.05);
+                bed.clefts.push_back({vec3{elementary::cos(angle), elementary::sin(angle), 0}, step});
+            }
+            std::sort(bed.clefts.begin(), bed.clefts.end(), [](outcrop_cleft const& a, outcrop_cleft const& b) {
+                return earlier_around(a.out, b.out);
+            });
+            beds_.push_back(std::move(bed));
+        }
     }
 
-    /// Distance from the axis at the share t in [0, 1] of the rim's height.
-    [[nodiscard]] double flank(vec3 const& out, double t) const noexcept {
-        double const z = t * rim(out);
-        double const plan = 1 / std::sqrt(out[0] * out[0] / (3.0 * 3.0) + out[1] * out[1] / (2.2 * 2.2));
-        double const front = smooth(0.55 - 0.8 * out[1]);
-        vec3 const at{plan * out[0], plan * out[1], z};
-        // The back is a slope, the front a wall that hangs over a niche.
-        double const slope = 0.95 - 0.2 * t;
-        double const niche = smooth((t + 0.25) / 0.4) * smooth((0.62 - t) / 0.25);
-        double const wall = 0.94 - 0.17 * niche * (1 + 0.6 * bedding(vec3{at[0] + 9, at[1], at[2]})) - 0.1 * smooth((t - 0.85) / 0.15);
-        // Beds of uneven thickness stick out by uneven amounts, and not all the way around.
-        double const bed = (z + 0.45 * bedding(at)) / 0.95;
-        double const in_bed = bed - std::floor(bed);
-        double const strength = 0.5 + 0.9 * bedding(vec3{at[0], at[1], 3 * std::floor(bed)});
-        double const ledge = 0.1 * std::max(strength, 0.0) * (smooth(in_bed / 0.12) - in_bed);
-        // Joints: upright clefts where a noise crosses zero.
-        double const cleft = 1 - std::min(1.0, 14 * std::fabs(joints(vec3{at[0], at[1], 0.25 * z})));
-        // Between joints and beds the rock stands in blocks, some further out than others.
-        auto const cell = [](double x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x)) + 1000); };
-        double const bend = 0.5 * bedding(vec3{at[1], at[0], 0.5 * z});
-        stream random(relief.seed, stage::user, cell(at[0] / 1.1 + bend) + (cell(at[1] / 1.1 - bend) << 16) + (cell(bed) << 32));
-        double const block = 0.09 * random.uniform(-1, 1);
-        double const r = plan * (slope + front * (wall - slope) + block + ledge - 0.07 * cleft + 0.34 * relief(at));
-        return std::max(r, 0.35);
+    [[nodiscard]] std::vector<outcrop_bed> const& beds() const noexcept { return beds_; }
+
+    /// Unit directions around the axis, anticlockwise: about `around` even ones and the corners of the outlines.
+    [[nodiscard]] std::vector<vec3> directions(std::size_t around) const {
+        double const step = 6.283185307179586 / static_cast<double>(around);
+        std::vector<vec3> corners;
+        for (outcrop_bed const& bed : beds_) add_corners(bed, corners);
+        std::sort(corners.begin(), corners.end(), earlier_around);
+        std::vector<vec3> all;
+        auto const apart = [&](vec3 const& p, double least) {
+            return all.empty() || (squared_length(vec3{p - all.back()}) > least * least &&
+                                   squared_length(vec3{p - all.front()}) > least * least);
+        };
+        for (vec3 const& p : corners) {
+            if (apart(p, 0.3 * step)) all.push_back(p);
+        }
+        std::vector<vec3> const kept = all;
+        for (std::size_t i = 0; i < around; ++i) {
+            double const angle = step * static_cast<double>(i);
+            vec3 const p{elementary::cos(angle), elementary::sin(angle), 0};
+            bool const free = std::none_of(kept.begin(), kept.end(), [&](vec3 const& q) {
+                return squared_length(vec3{p - q}) < 0.36 * step * step;
+            });
+            if (free) all.push_back(p);
+        }
+        std::sort(all.begin(), all.end(), earlier_around);
+        return all;
     }
 
-    /// Height of the top at the share u in [0, 1] of the rim's radius; the crown's middle is the same
-    /// for every direction.
-    [[nodiscard]] double top(vec3 const& out, double u) const noexcept {
-        double const edge = rim(out);
-        double const radius = u * flank(out, 1);
-        double const bump = 0.25 + 0.25 * crown(vec3{radius * out[0], radius * out[1], 7});
-        double const dome = smooth(1.6 * (1 - u));
-        // The highest rim is 4.55: a crown of 4.6 stays above every rim.
-        return edge + dome * (4.6 - edge) + bump * smooth(4 * (1 - u)) * smooth(4 * u);
+    /// What the flank stands out at a point of it, m; small against every radius.
+    [[nodiscard]] double roughness(vec3 const& p) const noexcept {
+        return 0.09 * fractal_noise{.seed = seed_, .frequency = 2, .octaves = 3}(p);
     }
+
+    /// Tilts and warps the beds: moves along z only, by what depends on x and y, fading out to z = 0.
+    /// `warp`: height of the waves, m; they are long, so faces much shorter than a metre follow them.
+    [[nodiscard]] vec3 bent(vec3 const& p, double warp) const noexcept {
+        double const wave = gradient_noise{.seed = seed_ + 1, .frequency = 0.4}(vec3{p[0], p[1], 0});
+        double const lift = std::min(1.0, p[2] / 0.7);
+        return {p[0], p[1], p[2] + lift * (0.13 * p[0] - 0.05 * p[1] + warp * wave)};
+    }
+
+private:
+    /// Side 0 .. 3 looks to +x, +y, -x, -y; side 4 cuts off a corner. `t`: height, 0 .. 1.
+    [[nodiscard]] static outcrop_joint joint(std::size_t side, std::size_t block, double t, double turn, double far) {
+        auto const ease = [](double x) {
+            x = std::clamp(x, 0.0, 1.0);
+            return x * x * (3 - 2 * x);
+        };
+        constexpr double quarter = 1.5707963267948966;
+        double angle = turn + quarter * static_cast<double>(side);
+        double reach = 1;
+        if (side == 0) reach = 2.9 - 0.5 * ease(3 * t) - 1.0 * ease(2.5 * t - 1.2);
+        if (side == 1) reach = 2.6 - 0.8 * t;
+        if (side == 2) reach = 3.0 - 0.7 * ease(2.5 * t - 1.4);
+        // The front: a foot, a niche over it, a nose over the niche, the top set back.
+        if (side == 3) reach = 2.3 - 0.9 * ease((t - 0.08) / 0.2) + 0.85 * ease((t - 0.42) / 0.2) - 0.6 * ease((t - 0.75) / 0.2);
+        if (side == 4) {
+            angle = turn + quarter * (0.45 + 1.1 * static_cast<double>(block) + 0.2 * far);
+            reach = 2.9 - 0.5 * t;
+        }
+        return {vec3{elementary::cos(angle), elementary::sin(angle), 0}, reach * far};
+    }
+
+    static void add_corners(outcrop_bed const& bed, std::vector<vec3>& corners) {
+        for (outcrop_cleft const& c : bed.clefts) {
+            for (double const w : {-c.half_width, 0.0, c.half_width}) {
+                corners.push_back(normalized(vec3{c.out[0] - w * c.out[1], c.out[1] + w * c.out[0], 0}));
+            }
+        }
+        std::vector<outcrop_joint> lines;
+        for (auto const& block : bed.blocks) lines.insert(lines.end(), block.begin(), block.end());
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                vec3 const& a = lines[i].normal;
+                vec3 const& b = lines[j].normal;
+                double const det = a[0] * b[1] - a[1] * b[0];
+                if (std::fabs(det) < 0.05) continue;
+                double const x = (lines[i].distance * b[1] - lines[j].distance * a[1]) / det;
+                double const y = (lines[j].distance * a[0] - lines[i].distance * b[0]) / det;
+                double const r = std::sqrt(x * x + y * y);
+                if (!(r > 0.1)) continue;
+                vec3 const out{x / r, y / r, 0};
+                if (std::fabs(bed.joints(out) - r) < 1e-6) corners.push_back(out);
+            }
+        }
+    }
+
+    std::uint64_t seed_;
+    std::vector<outcrop_bed> beds_{};
 };
 
 }  // namespace detail
 
-/// A procedural outcrop about 6 m wide, 5 m deep and 4.6 m high, standing on z = 0, z up: a wall with
-/// ledges and an overhang in front (-y), a slope behind.
+/// A procedural tor about 6 m wide, 5 m deep and 4.6 m high, standing on z = 0, z up: tilted beds of
+/// uneven thickness, cut by upright joints and clefts, with a niche and an overhang in front (-y).
 ///
-/// Closed, outward oriented, embedded, quads and two fans of triangles. `resolution` in 4 .. 2000 is
-/// the number of rings up the flank; there are about 5 resolution^2 faces. Depends on the arguments only. O(faces).
+/// Closed, outward oriented, embedded: before the beds are tilted, every half-plane at the axis meets the flank
+/// in a graph over the height. Quads and two fans of triangles. The beds' normal is that of (-0.13, 0.05, 1).
+/// `resolution` in 4 .. 2000 is about the number of rows up the flank; there are 6 to 13 resolution^2 faces from 40 on.
+/// Depends on the arguments only. O(faces).
 /// \throws invalid_input  `bad_parameter`.
 [[nodiscard]] inline indexed_mesh make_outcrop(std::uint64_t seed = 1, std::size_t resolution = 40) {
     detail::require_range("make_outcrop.resolution", static_cast<double>(resolution), 4, 2000);
-    detail::outcrop_shape const shape(seed);
-    std::size_t const around = 4 * resolution;
-    std::size_t const up = resolution;
-    std::size_t const over = resolution / 2;
-    std::vector<vec3> directions;
-    for (std::size_t i = 0; i < around; ++i) {
-        double const angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(around);
-        directions.push_back(vec3{elementary::cos(angle), elementary::sin(angle), 0});
-    }
+    detail::outcrop_plan const plan(seed);
+    double const height = detail::outcrop_plan::height;
+    // Coarse faces would cut each other where they cannot follow the waves.
+    double const warp = 0.15 * std::min(1.0, static_cast<double>(resolution * resolution) / 1600);
+    std::vector<vec3> const directions = plan.directions(4 * resolution);
+    std::size_t const around = directions.size();
+    std::size_t const across = resolution / 20 + 1;
+    std::vector<double> rim(around, 0);  // of the ring before
     indexed_mesh mesh;
-    auto const ring = [&](auto const& place) {
-        for (vec3 const& out : directions) mesh.add_vertex(place(out));
+    std::size_t rings = 0;
+    auto const ring = [&](double z, auto const& reach) {
+        for (std::size_t i = 0; i < around; ++i) {
+            double const r = reach(i);
+            mesh.add_vertex(plan.bent(vec3{r * directions[i][0], r * directions[i][1], z}, warp));
+        }
+        ++rings;
     };
-    for (std::size_t k = 0; k <= up; ++k) {
-        double const t = static_cast<double>(k) / static_cast<double>(up);
-        ring([&](vec3 const& out) {
-            double const r = shape.flank(out, t);
-            return vec3{r * out[0], r * out[1], t * shape.rim(out)};
-        });
+    double const seam = 0.06;   // m: height over which a ledge rises
+    double const bevel = 0.04;  // m
+    for (detail::outcrop_bed const& bed : plan.beds()) {
+        std::vector<double> reach(around);
+        for (std::size_t i = 0; i < around; ++i) reach[i] = bed.reach(directions[i]);
+        auto const at = [&](double z, double inset) {
+            double const grown = 1 + bed.batter * (z - bed.bottom);
+            return [&, z, grown, inset](std::size_t i) {
+                double const r = std::max(reach[i] * grown - inset, 0.4);
+                return r + plan.roughness(vec3{r * directions[i][0], r * directions[i][1], z});
+            };
+        };
+        double low = bed.bottom;
+        if (rings > 0) {
+            auto const foot = at(low + seam, 0.5 * bevel);
+            for (std::size_t k = 1; k <= across; ++k) {
+                double const t = static_cast<double>(k) / static_cast<double>(across + 1);
+                ring(low + t * seam, [&](std::size_t i) { return (1 - t) * rim[i] + t * foot(i); });
+            }
+            low += seam;
+            ring(low, foot);
+            low += bevel;
+        }
+        double const high = bed.top - bevel;
+        auto const rows = static_cast<std::size_t>(std::floor(static_cast<double>(resolution) * (high - low) / height)) + 1;
+        for (std::size_t k = 0; k <= rows; ++k) {
+            double const z = low + (high - low) * static_cast<double>(k) / static_cast<double>(rows);
+            ring(z, at(z, 0));
+        }
+        auto const last = at(bed.top, bevel);
+        ring(bed.top, last);
+        for (std::size_t i = 0; i < around; ++i) rim[i] = last(i);
     }
+    std::size_t const over = resolution / 4 + 1;
     for (std::size_t k = 1; k < over; ++k) {
         double const u = 1 - static_cast<double>(k) / static_cast<double>(over);
-        ring([&](vec3 const& out) {
-            double const r = u * shape.flank(out, 1);
-            return vec3{r * out[0], r * out[1], shape.top(out, u)};
-        });
+        ring(height, [&](std::size_t i) { return u * rim[i]; });
     }
-    std::size_t const rings = up + over;
     auto const at = [&](std::size_t row, std::size_t i) { return static_cast<std::uint32_t>(row * around + i % around); };
-    auto const bottom = mesh.add_vertex(vec3{0, 0, 0}).value;
-    auto const summit = mesh.add_vertex(vec3{0, 0, 4.6}).value;
+    auto const bottom = mesh.add_vertex(plan.bent(vec3{0, 0, 0}, warp)).value;
+    auto const summit = mesh.add_vertex(plan.bent(vec3{0, 0, height}, warp)).value;
     for (std::size_t i = 0; i < around; ++i) {
         mesh.add_face({bottom, at(0, i + 1), at(0, i)});
         for (std::size_t row = 0; row + 1 < rings; ++row) {
