@@ -128,6 +128,11 @@ void require_laws(solid const& body, std::vector<vec3> const& sites, tafoni_test
     CHECK(broken.empty());
 }
 
+/// Twice the area vector inside the outline of face f, holes included.
+vec3 doubled_outline(shard_complex const& c, std::uint32_t f) {
+    return detail::doubled_area(c.face_loop(face_index{f}, 0), [&c](vertex_index v) { return c.position(v); });
+}
+
 std::string bytes_of(shard_complex const& c) {
     std::string s;
     auto const add = [&s](auto const& v) { s.append(reinterpret_cast<char const*>(v.data()), v.size() * sizeof v[0]); };
@@ -210,6 +215,42 @@ TEST_CASE("two boxes and one site make two shards of it, a cavity makes one with
     REQUIRE(two.cell_count() == 2);
     CHECK(std::min(two.volumes[0], two.volumes[1]) == Approx(26).epsilon(1e-12));
     CHECK(std::max(two.volumes[0], two.volumes[1]) == Approx(64).epsilon(1e-12));
+}
+
+TEST_CASE("of hollow balls in one cell each keeps its own cavity, however many there are") {
+    indexed_mesh mesh;
+    for (int k = 0; k < 30; ++k) {
+        double const x = 8.0 * (k % 5);
+        double const y = 8.0 * (k / 5);
+        auto hollow = tafoni_test::box_with_cavity();
+        for (vec3& p : hollow.positions) p = vec3{p[0] * (1 + 0.01 * k) + x, p[1] * (1 + 0.01 * k) + y, p[2] * (1 + 0.01 * k)};
+        tafoni_test::append(mesh, hollow);
+    }
+    auto const c = voronoi_shards(make_solid(mesh), std::vector<vec3>{vec3{16, 16, 1}});
+    REQUIRE(c.cell_count() == 30);
+    std::vector<double> volumes(c.volumes);
+    std::sort(volumes.begin(), volumes.end());
+    for (std::size_t k = 0; k < volumes.size(); ++k) {
+        double const edge = 1 + 0.01 * static_cast<double>(k);
+        CHECK(volumes[k] == Approx(26 * edge * edge * edge).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("a cut through many tubes gives a ring for each of them") {
+    indexed_mesh mesh;
+    for (int k = 0; k < 40; ++k) {
+        auto tube = tafoni_test::frame();
+        double const s = 1 + 0.01 * k;
+        for (vec3& p : tube.positions) p = vec3{s * p[0] + 5.0 * (k % 8), s * p[1] + 5.0 * (k / 8), p[2]};
+        tafoni_test::append(mesh, tube);
+    }
+    auto const c = voronoi_shards(make_solid(mesh), std::vector<vec3>{vec3{20, 12, 0.25}, vec3{20, 12, 0.75}});
+    REQUIRE(c.interior_face_count == 40);
+    for (std::uint32_t f = 0; f < 40; ++f) {
+        CHECK(c.loop_count(face_index{f}) == 2);
+        double const outline = length(doubled_outline(c, f));
+        CHECK(2 * length(tafoni_test::sum_face(c, f, vec3{0, 0, 0}).area) == Approx(outline * 8 / 9).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("a face around a bore keeps it as a hole loop") {

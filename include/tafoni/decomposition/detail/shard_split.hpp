@@ -121,37 +121,56 @@ private:
         return x;
     }
 
+    /// The box and one corner of every piece, and its faces one behind the other.
+    void find_boxes(std::span<std::uint32_t const> label, std::uint32_t count) {
+        boxes_.assign(count, box3{});
+        corner_.resize(count);
+        piece_begin_.assign(count + 1, 0);
+        for (std::uint32_t l : label) ++piece_begin_[l + 1];
+        for (std::uint32_t c = 0; c < count; ++c) piece_begin_[c + 1] += piece_begin_[c];
+        piece_faces_.resize(faces_.size());
+        std::vector<std::size_t> next(piece_begin_.begin(), piece_begin_.end() - 1);
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            piece_faces_[next[label[f]]++] = faces_[f];
+            for_loops(faces_[f], [&](std::span<std::uint32_t const> loop, double) {
+                for (std::uint32_t v : loop) boxes_[label[f]].include(places_(v));
+                corner_[label[f]] = places_(loop[0]);
+            });
+        }
+    }
+
+    /// Does the surface of a piece wrap around x?
+    [[nodiscard]] bool wraps(std::uint32_t piece, vec3 const& x) const {
+        int winding = 0;
+        for (std::size_t f = piece_begin_[piece]; f < piece_begin_[piece + 1]; ++f) {
+            for_loops(piece_faces_[f], [&](std::span<std::uint32_t const> loop, double sign) {
+                winding += sign > 0 ? winding_above(loop, places_, x) : -winding_above(loop, places_, x);
+            });
+        }
+        return winding != 0;
+    }
+
     /// A closed surface of negative volume bounds a cavity of the smallest piece around it. Without one
     /// (where the solid's surface cuts itself) it goes to the largest piece of the cell.
     std::uint32_t place_cavities(std::span<std::uint32_t> label, std::uint32_t count) {
         owner_.resize(count);
         std::uint32_t largest = 0;
-        bool any = false;
+        std::size_t solids = 0;
+        std::size_t cavities = 0;
         for (std::uint32_t c = 0; c < count; ++c) {
             owner_[c] = c;
             if (sums_[c].six_volumes > sums_[largest].six_volumes) largest = c;
-            any = any || sums_[c].six_volumes < 0;
+            ++(sums_[c].six_volumes < 0 ? cavities : solids);
         }
-        if (!any || !(sums_[largest].six_volumes > 0)) return count;
+        if (cavities == 0 || !(sums_[largest].six_volumes > 0)) return count;
+        if (solids > 1) find_boxes(label, count);
         for (std::uint32_t c = 0; c < count; ++c) {
             if (sums_[c].six_volumes >= 0) continue;
-            vec3 x = apex_;
-            for (std::size_t f = 0; f < faces_.size(); ++f) {
-                if (label[f] == c) {
-                    for_loops(faces_[f], [&](std::span<std::uint32_t const> loop, double) { x = places_(loop[0]); });
-                    break;
-                }
-            }
-            winding_.assign(count, 0);
-            for (std::size_t f = 0; f < faces_.size(); ++f) {
-                if (sums_[label[f]].six_volumes <= 0) continue;
-                for_loops(faces_[f], [&](std::span<std::uint32_t const> loop, double sign) {
-                    winding_[label[f]] += sign > 0 ? winding_above(loop, places_, x) : -winding_above(loop, places_, x);
-                });
-            }
-            std::uint32_t best = count;
-            for (std::uint32_t o = 0; o < count; ++o) {
-                if (winding_[o] != 0 && (best == count || sums_[o].six_volumes < sums_[best].six_volumes)) best = o;
+            std::uint32_t best = solids > 1 ? count : largest;
+            for (std::uint32_t o = 0; o < count && solids > 1; ++o) {
+                if (!(sums_[o].six_volumes > 0) || !boxes_[o].contains(corner_[c])) continue;
+                if (best != count && sums_[o].six_volumes >= sums_[best].six_volumes) continue;
+                if (wraps(o, corner_[c])) best = o;
             }
             owner_[c] = best == count ? largest : best;
         }
@@ -186,7 +205,10 @@ private:
     std::vector<cone_sum> sums_{};
     std::vector<std::uint32_t> owner_{};
     std::vector<std::uint32_t> renumbered_{};
-    std::vector<int> winding_{};
+    std::vector<box3> boxes_{};
+    std::vector<vec3> corner_{};
+    std::vector<std::size_t> piece_begin_{};
+    std::vector<std::uint32_t> piece_faces_{};
 };
 
 /// Splits all cells. O(corners), with n log n in the cells that the surface touches.
