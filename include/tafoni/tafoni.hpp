@@ -28,6 +28,7 @@
 #include <tafoni/decomposition/shard_surface.hpp>
 #include <tafoni/decomposition/sites.hpp>
 #include <tafoni/decomposition/slab_sites.hpp>
+#include <tafoni/decomposition/source_barycentrics.hpp>
 #include <tafoni/decomposition/surface_normals.hpp>
 #include <tafoni/decomposition/surface_sites.hpp>
 #include <tafoni/decomposition/vertex_sites.hpp>
