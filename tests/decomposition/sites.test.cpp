@@ -222,3 +222,13 @@ TEST_CASE("bad parameters of patterns are refused") {
     CHECK_THROWS_AS(given_sites{}(l_solid(), 1), invalid_input);
     CHECK(given_sites{.points = {{1, 2, 3}}}(l_solid(), 1).size() == 1);
 }
+
+TEST_CASE("plates and rods get about as many sites as asked for") {
+    for (vec3 const& size : {vec3{1, 1, 1e-6}, vec3{1e-6, 1, 2}, vec3{1000, 1e-3, 1e-3}, vec3{1e-6, 1e-3, 1}}) {
+        solid const body = make_solid(box({0, 0, 0}, size));
+        auto const grid = grid_sites{.count = 300}(body, 1).size();
+        CHECK((grid >= 150 && grid <= 600));
+        auto const columns = hexagonal_sites{.count = 300}(body, 1).size();
+        CHECK((columns >= 100 && columns <= 1200));
+    }
+}

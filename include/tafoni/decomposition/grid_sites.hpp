@@ -7,6 +7,8 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/decomposition/sites.hpp>
 
+#include <algorithm>
+
 namespace tafoni {
 
 /// The centres of equal, nearly cubic boxes that fill the solid's box, each moved within its box.
@@ -21,7 +23,7 @@ struct grid_sites {
         vec3 const extent = s.bounds.extent();
         double const box_volume = extent[0] * extent[1] * extent[2];
         // Relative to the solid, so that no intermediate value leaves the range of doubles.
-        double const edge = elementary::pow(s.volume / static_cast<double>(count), 1.0 / 3);
+        double const edge = edge_of(extent, s.volume);
         std::size_t n[3];
         double total = 1;
         for (int a = 0; a < 3; ++a) {
@@ -57,6 +59,18 @@ struct grid_sites {
     void validate() const {
         detail::require_site_count("grid_sites", count);
         detail::require_range("grid_sites.jitter", jitter, 0, 1);
+    }
+
+private:
+    /// Edge of a grid that has `count` boxes in the solid; where the box is thin, of one layer or one row.
+    [[nodiscard]] double edge_of(vec3 const& extent, double volume) const {
+        double e[3] = {extent[0], extent[1], extent[2]};
+        std::sort(e, e + 3);
+        double const n = static_cast<double>(count);
+        double const cubic = elementary::pow(volume / n, 1.0 / 3);
+        if (e[0] >= 0.5 * cubic) return cubic;
+        double const square = std::sqrt(volume / e[0] / n);
+        return e[1] >= 0.5 * square ? square : volume / e[0] / e[1] / n;
     }
 };
 

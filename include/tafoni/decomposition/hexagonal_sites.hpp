@@ -6,6 +6,8 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/decomposition/sites.hpp>
 
+#include <algorithm>
+
 namespace tafoni {
 
 /// A hexagonal lattice in planes across `axis` [Mateos et al., Figure 15]. Models `site_pattern`.
@@ -27,23 +29,29 @@ struct hexagonal_sites {
         vec3 const centre = s.bounds.centre();
         box3 const local = frame.local_box(s.bounds, centre);
         vec3 const extent = local.extent();
-        // A cell of a hexagonal lattice with spacing a covers sqrt(3)/2 a^2.
-        double const spacing = std::sqrt(extent[0] * extent[1] / static_cast<double>(count) / 0x1.bb67ae8584caap-1);
+        // A cell of a hexagonal lattice with spacing a covers sqrt(3)/2 a^2; in a narrow box there is one row.
+        double const n = static_cast<double>(count);
+        double const spacing = std::max({std::sqrt(extent[0] * extent[1] / n / 0x1.bb67ae8584caap-1), extent[0] / n,
+                                         extent[1] / n / 0x1.bb67ae8584caap-1});
         double const row = spacing * 0x1.bb67ae8584caap-1;
-        auto const columns = static_cast<std::int64_t>(std::floor(extent[0] / spacing)) + 2;
+        bool const narrow = extent[0] < 0.5 * spacing;
+        double const stagger = narrow ? 0.0 : 0.5;
+        auto const columns = narrow ? 1 : static_cast<std::int64_t>(std::floor(extent[0] / spacing)) + 2;
         auto const rows = static_cast<std::int64_t>(std::floor(extent[1] / row)) + 1;
         double const first_row = -0.5 * row * static_cast<double>(rows - 1);
-        double const first_column = -0.5 * spacing * (static_cast<double>(columns - 1) + 0.5);
+        double const first_column = -0.5 * spacing * (static_cast<double>(columns - 1) + stagger);
+        double const reach_u = 0.5 * jitter * std::min(spacing, extent[0]);
+        double const reach_v = 0.5 * jitter * std::min(spacing, extent[1]);
         std::vector<vec3> sites;
         std::uint64_t number = 0;
         for (std::int64_t r = 0; r < rows; ++r) {
             for (std::int64_t c = 0; c < columns; ++c) {
                 for (std::size_t l = 0; l < layers; ++l) {
                     stream random(seed, stage::jitter, number++);
-                    double const du = 0.5 * jitter * spacing * random.uniform(-1, 1);
-                    double const dv = 0.5 * jitter * spacing * random.uniform(-1, 1);
+                    double const du = reach_u * random.uniform(-1, 1);
+                    double const dv = reach_v * random.uniform(-1, 1);
                     double const dw = vertical_jitter * spacing * random.uniform(-1, 1);
-                    vec3 const q{first_column + spacing * (static_cast<double>(c) + (r % 2 != 0 ? 0.5 : 0.0)) + du,
+                    vec3 const q{first_column + spacing * (static_cast<double>(c) + (r % 2 != 0 ? stagger : 0.0)) + du,
                                  first_row + row * static_cast<double>(r) + dv,
                                  local.lo[2] + extent[2] * ((static_cast<double>(l) + 0.5) / static_cast<double>(layers)) + dw};
                     place(s.bounds, frame, centre, q, sites);
