@@ -55,19 +55,22 @@ void write_faces(Diagram& d, cell_block const& block, block_offset at, std::vect
     std::size_t face = 0;
     std::uint32_t const* vertex = block.vertex.data();
     std::size_t cell = at.cell;
+    std::vector<std::uint32_t> loop(32);
     for (auto const& c : block.cells) {
         d.face_begin[cell++] = static_cast<std::uint32_t>(at.face + face);
         auto const write = [&](auto const* list) {
             for (std::uint32_t f = 0; f < c.faces; ++f, ++face) {
                 d.corner_begin[at.face + face] = static_cast<std::uint32_t>(at.corner);
                 std::uint32_t const degree = block.degree[face];
-                std::uint32_t* const to = d.corners.data() + at.corner;
+                std::uint32_t* to = d.corners.data() + at.corner;
+                if (loop.size() < degree) loop.resize(2 * degree);
                 std::uint32_t lowest = 0;
                 for (std::uint32_t k = 0; k < degree; ++k) {
-                    to[k] = global(vertex[list[k]]);
-                    if (to[k] < to[lowest]) lowest = k;
+                    loop[k] = global(vertex[list[k]]);
+                    if (loop[k] < loop[lowest]) lowest = k;
                 }
-                std::rotate(to, to + lowest, to + degree);
+                for (std::uint32_t k = lowest; k < degree; ++k) *to++ = loop[k];
+                for (std::uint32_t k = 0; k < lowest; ++k) *to++ = loop[k];
                 at.corner += degree;
                 list += degree;
             }
@@ -96,7 +99,8 @@ void make_room(std::vector<T>& list, std::size_t size, double share_done) {
 /// runs before it are: only one run is held besides the result.
 template <class Diagram, class Executor>
 void assemble_diagram(Diagram& d, Executor const& pool, run_context const& context) {
-    constexpr std::size_t blocks_per_run = 32;
+    // A run stays in the caches where few threads share it.
+    std::size_t const blocks_per_run = 8 * std::max<std::size_t>(pool.thread_count(), 1);
     site_tree const tree(d.sites);
     lattice_box const box{d.box_lo, d.box_hi};
     std::size_t const leaves = tree.leaves.size();

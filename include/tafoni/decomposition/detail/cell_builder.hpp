@@ -123,7 +123,7 @@ private:
                                static_cast<std::uint32_t>(sites_.size()))) {
             return false;
         }
-        wrapped_->start({at, i}, scale, reach, margin);
+        wrapped_->start({at, i}, first_, scale, reach, margin);
         auto const place = [&](std::uint32_t id) { return wrapped_->plane(id, planes_); };
         ivec3 const& origin = sites_[first_];
         std::array<double, 3> shift{};

@@ -82,7 +82,7 @@ public:
             e[w / 2] = w % 2 != 0 ? 1.0F : -1.0F;
             put(end_[shell(4 * gap[w] * gap[w])]++, e[0], e[1], e[2], gap[w], wall_id + w);
         }
-        for (std::size_t k = count_; k < count_ + float_lanes; ++k) put(k, 0, 0, 0, 1, 0);
+        for (std::size_t k = count_; k < count_ + float_lanes; ++k) put(k, 0, 0, 0, std::numeric_limits<float>::max(), 0);
         return true;
     }
 
@@ -121,14 +121,20 @@ public:
         return result;
     }
 
-    /// Calls visit(k) for the planes among the first `n` that have `v` beyond them, or not `margin` before them,
-    /// until it returns true. True when one did.
+    /// How many of the first `n` planes have `v` beyond them, or not `margin` before them.
+    [[nodiscard]] std::size_t count_near(std::array<float, 3> const& v, float margin, std::size_t n) const noexcept {
+        int_vector sum{};
+        for (std::size_t k = 0; k < n; k += float_lanes) sum -= ahead(v, k) > -margin;
+        std::int32_t count = 0;
+        for (std::size_t k = 0; k < float_lanes; ++k) count += sum[k];
+        return static_cast<std::size_t>(count);
+    }
+
+    /// Calls visit(k) for these planes until it returns true. True when one did.
     template <class Visit>
     [[nodiscard]] bool any_near(std::array<float, 3> const& v, float margin, std::size_t n, Visit const& visit) const {
         for (std::size_t k = 0; k < n; k += float_lanes) {
-            float_vector const s = load_floats(x_.data() + k) * v[0] + load_floats(y_.data() + k) * v[1] +
-                                   load_floats(z_.data() + k) * v[2] - load_floats(h_.data() + k);
-            int_vector const reached = s > -margin;
+            int_vector const reached = ahead(v, k) > -margin;
             if (!any_lane(reached)) continue;
             for (std::size_t l = 0; l < float_lanes; ++l) {
                 if (reached[l] != 0 && k + l < count_ && visit(k + l)) return true;
@@ -138,6 +144,10 @@ public:
     }
 
 private:
+    [[nodiscard]] float_vector ahead(std::array<float, 3> const& v, std::size_t k) const noexcept {
+        return load_floats(x_.data() + k) * v[0] + load_floats(y_.data() + k) * v[1] + load_floats(z_.data() + k) * v[2] -
+               load_floats(h_.data() + k);
+    }
     [[nodiscard]] std::size_t shell(float d2) const noexcept {
         return static_cast<std::size_t>(static_cast<std::int32_t>(d2 * per_shell_));
     }

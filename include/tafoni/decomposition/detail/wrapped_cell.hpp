@@ -40,12 +40,14 @@ public:
 
     /// An empty cell, in units of 1 / `scale`; `reach`: how far the planes to come are complete;
     /// `margin`: how far, of lengths squared, single precision may be off.
-    void start(exact::site const& site, double scale, float reach, float margin) noexcept {
+    /// Planes of sites in [absent, site.rank) are not among those to come.
+    void start(exact::site const& site, std::uint32_t absent, double scale, float reach, float margin) noexcept {
         for (std::uint32_t p = 0; p < planes_; ++p) {
             std::memset(holder_.data() + p * max_planes, none, max_planes);
             slot_[slot_of_[p]] = none;
         }
         site_ = site;
+        absent_ = absent;
         scale_ = scale;
         limit2_ = 0.24F * reach * reach;
         margin_ = margin;
@@ -145,7 +147,7 @@ private:
         float const size = (std::fabs(x_[a]) + std::fabs(y_[a]) + std::fabs(z_[a])) *
                            (std::fabs(x_[b]) + std::fabs(y_[b]) + std::fabs(z_[b]));
         float const r2 = from[0] * from[0] + from[1] * from[1] + from[2] * from[2];
-        std::size_t k = planes.first_hit(from, along, margin_ * size, planes.within(1.3F * r2));
+        std::size_t k = planes.first_hit(from, along, margin_ * size, planes.within(1.2F * r2));
         bool all = k == near_planes::none;
         if (all) k = planes.first_hit(from, along, margin_ * size, planes.count());
         if (k == near_planes::none) return false;
@@ -164,8 +166,11 @@ private:
             }
             double const length = std::sqrt(e.x * e.x + e.y * e.y + e.z * e.z);
             float const margin = margin_ + static_cast<float>(e.error * scale_) * 8 * std::sqrt(limit2_);
+            std::size_t const there = planes.within(radius2);
+            // The three planes themselves are near it; usually no others are.
+            std::size_t const expected = std::size_t{present(a)} + std::size_t{present(b)} + 1;
             std::size_t other = k;
-            bool const cut = planes.any_near(at, margin, planes.within(radius2), [&](std::size_t q) {
+            bool const cut = planes.count_near(at, margin, there) != expected && planes.any_near(at, margin, there, [&](std::size_t q) {
                 std::uint32_t const global = planes.id(q);
                 if (global == id_[a] || global == id_[b] || global == id_[c]) return false;
                 exact::plane const p = plane_at(global);
@@ -188,6 +193,8 @@ private:
         }
     }
 
+    [[nodiscard]] bool present(id p) const noexcept { return id_[p] < absent_ || id_[p] > site_.rank; }
+
     // By the order of ids, so that the lowest site of a vertex always gets the same bits.
     [[nodiscard]] vertex_estimate corner(id a, id b, id c) const noexcept {
         if (id_[a] > id_[b]) std::swap(a, b);
@@ -197,6 +204,7 @@ private:
     }
 
     exact::site site_{};
+    std::uint32_t absent_ = 0;
     double scale_ = 1;
     float limit2_ = 0;
     float margin_ = 0;
