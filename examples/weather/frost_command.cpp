@@ -31,6 +31,7 @@ CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     c->footer(
         "SPEC is name:key=value,key=value. Lengths are in the unit of the model.\n"
         "  --sites       random | surface | grid | hex:axis=,layers=,vertical= | slabs:up=,spacings=,across= |\n"
+        "                joints:up=,turn=,flat=,spacing=,variation=,left_out= |\n"
         "                poisson:radius=,ratio=,direction= | vertices:of=FILE | FILE (mesh, or lines x y z)\n"
         "  --resistance  constant:value= | layers:values=,tops=,thickness=,up=,fold=,wavelength= |\n"
         "                sine:direction=,wavelength=,mean=,amplitude=,phase= | ramp:direction=,low=,high= |\n"
@@ -38,12 +39,13 @@ CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
         "                grid:path=FILE.nrrd,range=,low=,high=,place=fit\n"
         "  --core, --air none | all | plane:point=,normal= | box:lo=,hi= | bottom:share= | exterior |\n"
         "                exterior-except:direction=,angle= | artificial | file:path= (mesh, or cell numbers)\n"
+        "Results and snapshots that an older run left in the output folder are replaced; other files stay.\n"
         "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (a checkpoint is written).");
     c->add_option("INPUT", a.input, "mesh (.obj .ply .stl), elevation grid (.asc) or builtin:outcrop")->required();
     c->add_option("-o,--output", a.output, "folder for the results")->required();
     c->add_option("--shards", a.shards, "about how many shards")->check(CLI::Range(std::size_t{1}, std::size_t{100000000}))->capture_default_str();
     c->add_option("--sites", a.sites, "SPEC or file: where shards grow from")->capture_default_str();
-    c->add_option("--jitter", a.jitter, "of grid, hex and slabs, share of the spacing")->check(between(0.0, 1.0))->capture_default_str();
+    c->add_option("--jitter", a.jitter, "of grid, hex, slabs and joints, share of the spacing")->check(between(0.0, 1.0))->capture_default_str();
     c->add_option("--patch-angle", a.patch_angle, "degrees within which skin is one link")->check(between(0.0, 180.0))->capture_default_str();
     c->add_option("--paths", a.paths, "water paths in all, those before --resume included")->capture_default_str();
     c->add_option("--batch", a.batch, "paths that walk one frozen state")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
@@ -56,10 +58,11 @@ CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     c->add_option("--resistance", a.resistance, "SPEC: how much the rock resists, 0 to 1")->capture_default_str();
     c->add_option("--core", a.core, "SPEC, repeatable: cells that never fall; default: artificial for .asc, else none");
     c->add_option("--air", a.air, "SPEC, repeatable: cells that are gone from the start");
+    c->add_option("--roughness", a.roughness, "of fresh breaks, share of the mean shard's width")->check(between(0.0, 0.5))->capture_default_str();
     c->add_option("--preset", a.preset, "paper or addon")->check(CLI::IsMember({"paper", "addon"}))->capture_default_str();
     c->add_option("--threads", a.threads, "0: as many as the machine has")->check(CLI::Range(std::size_t{0}, std::size_t{1024}))->capture_default_str();
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many paths; 0: none")->capture_default_str();
-    c->add_option("--checkpoint", a.checkpoint, "file to save the state to at the end");
+    c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end");
     c->add_option("--resume", a.resume, "checkpoint to go on from");
     c->add_option("--format", a.formats, "obj,ply,stl,vtp")->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
     c->add_option("--progress", a.progress, "bar, json or none; default: bar on a terminal")->check(CLI::IsMember({"bar", "json", "none", "auto"}));

@@ -33,6 +33,7 @@ struct frost_arguments {
     std::vector<std::string> core;  ///< empty: artificial for terrain, none otherwise
     std::vector<std::string> air;
     std::string preset = "paper";
+    double roughness = 0;
     std::size_t threads = 1;
     std::uint64_t snapshots = 0;
     std::string checkpoint;

@@ -31,8 +31,11 @@ private:
     void mark(run_type& run);
     void resume(run_type& run);
     void weather(run_type& run);
+    [[nodiscard]] tafoni::shard_surface roughened(tafoni::shard_surface surface) const;
     [[nodiscard]] surface_mesh standing(run_type const& run) const;
     void write_snapshot(run_type const& run);
+    void write_history() const;
+    void write_checkpoint(run_type const& run, std::string const& path) const;
     void write_results(run_type const& run);
     void write_blocks(run_type const& run);
     void write_graphs(run_type const& run) const;

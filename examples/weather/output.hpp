@@ -5,11 +5,22 @@
 
 #include <tafoni/io/write_pvd.hpp>
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace weather {
+
+/// Makes the folder and those above it. \throws tafoni::io_error
+std::filesystem::path made_folder(std::string const& name);
+
+/// Looks whether `made_folder` will be able to, and makes nothing. \throws tafoni::io_error
+void require_makable(std::string const& name);
+
+/// `prefix` and the number with at least so many digits.
+std::string numbered_name(char const* prefix, std::uint64_t n, int digits);
 
 class output_folder {
 public:
@@ -22,6 +33,9 @@ public:
     /// DIR/name.EXT in every format, atomically. \throws tafoni::io_error
     void write(std::string const& name, surface_mesh const& surface) const;
     void write_text(std::string const& name, std::string const& text) const;
+    /// Removes what an older run of `process` left and this one may not overwrite: its results, and its snapshots
+    /// that `keep` does not want. Files of other names stay. \throws tafoni::io_error
+    void remove_old(std::string const& process, std::function<bool(std::uint64_t)> const& keep) const;
     [[nodiscard]] std::string read_text(std::string const& name) const;  ///< empty where there is none
 
 private:

@@ -6,6 +6,7 @@
 #include <tafoni/decomposition/given_sites.hpp>
 #include <tafoni/decomposition/grid_sites.hpp>
 #include <tafoni/decomposition/hexagonal_sites.hpp>
+#include <tafoni/decomposition/joint_sites.hpp>
 #include <tafoni/decomposition/poisson_sites.hpp>
 #include <tafoni/decomposition/random_sites.hpp>
 #include <tafoni/decomposition/slab_sites.hpp>
@@ -75,6 +76,19 @@ std::vector<vec3> choose_sites(std::string const& text, solid const& body, std::
         pattern.across = s.number("across", 3 * thickness, 1e-150, 1e150);
         s.done();
         sites = pattern(body, seed);
+    } else if (s.name() == "joints") {
+        joint_sites pattern{.up = s.direction("up", up), .turn = s.number("turn", 0, -360, 360), .jitter = jitter};
+        pattern.variation = s.number("variation", 0.6, 0, 0.95);
+        pattern.left_out = s.number("left_out", 0.25, 0, 0.9);
+        // `flat`: how much wider than thick the blocks are.
+        double const flat = s.number("flat", 1.5, 1e-3, 1e3);
+        double const thickness =
+            cube_root(body.volume * (1 - pattern.left_out) / static_cast<double>(count) / (flat * flat));
+        auto const spacing = s.list("spacing", {flat * thickness, flat * thickness, thickness});
+        if (spacing.size() != 3) s.fail("spacing: three numbers are needed");
+        pattern.spacing = {spacing[0], spacing[1], spacing[2]};
+        s.done();
+        sites = pattern(body, seed);
     } else if (s.name() == "poisson") {
         sites = graded(s, body, count, seed);
         s.done();
@@ -89,7 +103,7 @@ std::vector<vec3> choose_sites(std::string const& text, solid const& body, std::
     } else if (std::error_code ignored; std::filesystem::is_regular_file(text, ignored)) {
         sites = given_sites{load_points(text)}(body, seed);
     } else {
-        s.fail("no such file; known: random, surface, grid, hex, slabs, poisson, vertices");
+        s.fail("no such file; known: random, surface, grid, hex, slabs, joints, poisson, vertices");
     }
     return sites;
 }

@@ -9,6 +9,7 @@ void append_surface(surface_mesh& out, shard_surface const& part, link_graph con
     auto& channels = out.attributes.face_channels;
     if (channels.empty()) {
         channels = {{.name = "life", .type = channel_type::float32},
+                    {.name = "hold", .type = channel_type::float32},
                     {.name = "exposure", .type = channel_type::uint8},
                     {.name = "shard", .type = channel_type::int32},
                     {.name = "fresh", .type = channel_type::uint8},
@@ -22,10 +23,11 @@ void append_surface(surface_mesh& out, shard_surface const& part, link_graph con
         link_index const link = links.link_of(part.face[t]);
         bool const fresh = part.fresh[t] != 0;
         channels[0].values.push_back(fresh && link.valid() ? colours.life(link) : colours.cell_life[part.cell[t].value]);
-        channels[1].values.push_back(link.valid() && colours.exposed(link) ? 1 : 0);
-        channels[2].values.push_back(part.cell[t].value);
-        channels[3].values.push_back(fresh ? 1 : 0);
-        channels[4].values.push_back(static_cast<double>(block));
+        channels[1].values.push_back(colours.cell_life[part.cell[t].value]);
+        channels[2].values.push_back(link.valid() && colours.exposed(link) ? 1 : 0);
+        channels[3].values.push_back(part.cell[t].value);
+        channels[4].values.push_back(fresh ? 1 : 0);
+        channels[5].values.push_back(static_cast<double>(block));
     }
 }
 

@@ -12,14 +12,14 @@ namespace weather {
 
 struct surface_mesh {
     tafoni::indexed_mesh mesh;
-    tafoni::mesh_attributes attributes;  ///< face channels: life, exposure, shard, fresh, block
+    tafoni::mesh_attributes attributes;  ///< face channels: life, hold, exposure, shard, fresh, block
 };
 
 /// Numbers shown on the faces.
 struct surface_colours {
     std::function<double(tafoni::link_index)> life;     ///< of a link that was laid open
     std::function<bool(tafoni::link_index)> exposed;    ///< the outside reaches it
-    std::vector<double> cell_life;  ///< per cell: how firmly it hangs, shown on original skin, which has no life
+    std::vector<double> cell_life;  ///< per cell: mean life of its links by area: how firmly it hangs; also the life of original skin
 };
 
 /// Appends `part` with its numbers; `block` tells fallen blocks apart.

@@ -44,6 +44,11 @@ expect 0 help "$weather" frost --help
 expect 0 version "$weather" --version
 
 # bad input: 1, and nothing is made
+: > plain_file
+expect 1 below_a_file "$weather" frost no_such_file.obj -o plain_file/out
+says below_a_file "cannot be made a folder"
+expect 1 checkpoint_below "$weather" frost no_such_file.obj -o none --checkpoint plain_file/state
+says checkpoint_below plain_file
 expect 1 missing "$weather" frost no_such_file.obj -o none
 says missing no_such_file.obj
 expect 1 directory "$weather" frost . -o none
@@ -58,24 +63,25 @@ says no_water "no water enters"
 [ ! -e none ] || complain "a refused run made its folder"
 
 # a run, its files and its report
-part="--shards 150 --snapshots 400 --core bottom:share=0.1 --spread 30 --format obj,ply,stl,vtp --progress none"
-small="$part --paths 1200"
+part="--shards 150 --snapshots 2000 --core bottom:share=0.1 --spread 30 --format obj,ply,stl,vtp --progress none"
+small="$part --paths 6000"
 rock=builtin:outcrop:resolution=12
 # shellcheck disable=SC2086
 expect 0 first "$weather" frost $rock -o first $small --checkpoint end1
 for file in weathered.obj weathered.ply weathered.stl weathered.vtp blocks.vtp blocks.json history.csv report.json \
-    snapshots/frost.pvd snapshots/frost_00000000.vtp snapshots/frost_00001200.vtp; do
+    snapshots/frost.pvd snapshots/frost_00000000.vtp snapshots/frost_00006000.vtp; do
     [ -s "first/$file" ] || complain "first/$file is missing or empty"
 done
 for key in schema version seed parameters threads stopped repaired cells sites links_interior links_exterior volume_solid \
     volume_cells paths links_broken cells_detached volume_detached seconds read shards graphs weather write; do
     grep -q "\"$key\":" first/report.json || complain "report.json has no $key"
 done
-[ "$(number first paths)" = 1200 ] || complain "paths is not 1200"
+[ "$(number first paths)" = 6000 ] || complain "paths is not 6000"
 [ "$(number first links_broken)" -gt 0 ] || complain "nothing broke"
+[ "$(number first cells_detached)" -gt 0 ] || complain "nothing fell"
 awk -v a="$(number first volume_solid)" -v b="$(number first volume_cells)" 'BEGIN { exit !(a > 0 && (a - b)^2 < (1e-9 * a)^2) }' ||
     complain "the shards do not fill the solid"
-tail -1 first/history.csv | grep -q "^1200,$(number first links_broken),$(number first cells_detached)," ||
+tail -1 first/history.csv | grep -q "^6000,$(number first links_broken),$(number first cells_detached)," ||
     complain "the history does not end as the report"
 
 # equal runs and thread counts
@@ -94,7 +100,7 @@ tail -1 first/history.csv | grep -q "^1200,$(number first links_broken),$(number
 # resumed runs equal uninterrupted ones
 # shellcheck disable=SC2086
 {
-    expect 0 half "$weather" frost $rock -o resumed $part --paths 600 --checkpoint half.bin
+    expect 0 half "$weather" frost $rock -o resumed $part --paths 3000 --checkpoint half.bin
     expect 0 rest "$weather" frost $rock -o resumed $small --resume half.bin
     cmp first/weathered.vtp resumed/weathered.vtp || complain "a resumed run ends differently"
     cmp first/blocks.json resumed/blocks.json || complain "a resumed run drops other blocks"
@@ -107,6 +113,41 @@ tail -1 first/history.csv | grep -q "^1200,$(number first links_broken),$(number
     expect 1 truncated "$weather" frost $rock -o none $small --resume cut.bin
     [ ! -e none ] || complain "a refused resume made its folder"
 }
+
+# a folder that is used again holds nothing of the older run, and keeps what others put there
+expect 0 old_run "$weather" frost $rock -o reused --shards 40 --paths 60 --snapshots 20 --format obj,ply,vtp --separate-blocks --graphs
+: > reused/notes.txt
+: > reused/snapshots/frost_mine.vtp
+expect 0 new_run "$weather" frost $rock -o reused --shards 40 --paths 30 --snapshots 15 --format vtp
+expect 0 clean_run "$weather" frost $rock -o clean --shards 40 --paths 30 --snapshots 15 --format vtp
+for file in notes.txt snapshots/frost_mine.vtp; do [ -e reused/$file ] || complain "a run removed $file"; done
+rm -rf reused/notes.txt reused/snapshots/frost_mine.vtp
+rmdir reused/blocks 2> /dev/null
+same reused clean
+
+# a run that is killed goes on from its last snapshot
+grown="--shards 60 --core bottom:share=0.2 --spread 30 --format vtp"
+# shellcheck disable=SC2086
+{
+    "$weather" frost $rock -o killed $grown --paths 2000000000 --snapshots 2000 --checkpoint killed.bin 2> killed.log &
+    child=$!
+    tries=0
+    until [ -s killed.bin ] || [ $tries -gt 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+    kill -KILL $child
+    wait $child 2> /dev/null
+    reached=$(ls killed/snapshots | sed -n 's/^frost_0*\([0-9]*\)\.vtp$/\1/p' | sort -n | tail -1)
+    end=$((reached + 4000))
+    expect 0 raised "$weather" frost $rock -o killed $grown --paths $end --snapshots 2000 --resume killed.bin
+    expect 0 unkilled "$weather" frost $rock -o unkilled $grown --paths $end --snapshots 2000
+    cmp killed/weathered.vtp unkilled/weathered.vtp || complain "going on after a kill ends differently"
+    diff -r killed/snapshots unkilled/snapshots || complain "the snapshots after a kill differ"
+}
+
+# rough breaks change the surface, not what happens
+# shellcheck disable=SC2086
+expect 0 rough "$weather" frost $rock -o rough $small --roughness 0.1
+cmp first/history.csv rough/history.csv || complain "roughness changes what falls"
+cmp -s first/weathered.obj rough/weathered.obj && complain "roughness changes nothing"
 
 # Ctrl-C: 130 and a checkpoint that goes on to the same end
 long="--shards 60 --core bottom:share=0.2 --spread 30 --format obj --progress json"
@@ -144,7 +185,7 @@ expect 0 terrain "$weather" frost hill.asc -o terrain --shards 60 --paths 300 --
 [ "$(number terrain cells_core)" -gt 0 ] || complain "no cell of a terrain is core"
 
 # every SPEC is understood
-for sites in random surface grid hex:layers=2,axis=0.1,0,1 slabs:spacings=0.5,0.9 poisson:ratio=3 vertices points.txt; do
+for sites in random surface grid hex:layers=2,axis=0.1,0,1 slabs:spacings=0.5,0.9 joints:turn=20,flat=2 poisson:ratio=3 vertices points.txt; do
     expect 0 sites "$weather" frost "$([ "$sites" = points.txt ] && echo inside_out.obj || echo $rock)" -o sites --shards 40 --sites "$sites" --paths 20 --format obj
 done
 printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\nABCDEFGH' > grid.nrrd
