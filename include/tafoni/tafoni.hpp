@@ -92,6 +92,7 @@
 #include <tafoni/io/read_stl.hpp>
 #include <tafoni/io/stl.hpp>
 #include <tafoni/io/vtk_xml.hpp>
+#include <tafoni/io/weathered_channels.hpp>
 #include <tafoni/io/write_obj.hpp>
 #include <tafoni/io/write_ply.hpp>
 #include <tafoni/io/write_pvd.hpp>
@@ -123,5 +124,6 @@
 #include <tafoni/weathering/frost_report.hpp>
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
+#include <tafoni/weathering/weathered_surface.hpp>
 
 #endif
