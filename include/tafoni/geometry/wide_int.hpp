@@ -54,7 +54,7 @@ inline constexpr std::size_t wider = N < M ? M : N;
 }  // namespace detail
 
 template <std::size_t N, std::size_t M>
-[[nodiscard]] constexpr wide_int<detail::wider<N, M>> operator+(wide_int<N> const& a, wide_int<M> const& b) noexcept {
+[[nodiscard, gnu::always_inline]] constexpr wide_int<detail::wider<N, M>> operator+(wide_int<N> const& a, wide_int<M> const& b) noexcept {
     wide_int<detail::wider<N, M>> r;
     std::uint64_t carry = 0;
     for (std::size_t k = 0; k < r.limb.size(); ++k) {
@@ -66,7 +66,7 @@ template <std::size_t N, std::size_t M>
 }
 
 template <std::size_t N>
-[[nodiscard]] constexpr wide_int<N> operator-(wide_int<N> const& a) noexcept {
+[[nodiscard, gnu::always_inline]] constexpr wide_int<N> operator-(wide_int<N> const& a) noexcept {
     wide_int<N> r;
     std::uint64_t carry = 1;
     for (std::size_t k = 0; k < N; ++k) {
@@ -77,7 +77,7 @@ template <std::size_t N>
 }
 
 template <std::size_t N, std::size_t M>
-[[nodiscard]] constexpr wide_int<detail::wider<N, M>> operator-(wide_int<N> const& a, wide_int<M> const& b) noexcept {
+[[nodiscard, gnu::always_inline]] constexpr wide_int<detail::wider<N, M>> operator-(wide_int<N> const& a, wide_int<M> const& b) noexcept {
     wide_int<detail::wider<N, M>> r;
     std::uint64_t borrow = 0;
     for (std::size_t k = 0; k < r.limb.size(); ++k) {
@@ -90,7 +90,7 @@ template <std::size_t N, std::size_t M>
 
 /// O(N M).
 template <std::size_t N, std::size_t M>
-[[nodiscard]] constexpr wide_int<N + M> operator*(wide_int<N> const& a, wide_int<M> const& b) noexcept {
+[[nodiscard, gnu::always_inline]] constexpr wide_int<N + M> operator*(wide_int<N> const& a, wide_int<M> const& b) noexcept {
     wide_int<N + M> r;
     for (std::size_t i = 0; i < N; ++i) {
         std::uint64_t carry = 0;
@@ -116,10 +116,21 @@ template <std::size_t N, std::size_t M>
 }
 
 /// The product of two 64-bit integers: one instruction.
-[[nodiscard]] constexpr wide_int<2> operator*(wide_int<1> const& a, wide_int<1> const& b) noexcept {
+[[nodiscard, gnu::always_inline]] constexpr wide_int<2> operator*(wide_int<1> const& a, wide_int<1> const& b) noexcept {
     detail::i128 const p = detail::i128{static_cast<std::int64_t>(a.limb[0])} * static_cast<std::int64_t>(b.limb[0]);
     wide_int<2> r;
     r.limb = {static_cast<std::uint64_t>(p), static_cast<std::uint64_t>(static_cast<detail::u128>(p) >> 64)};
+    return r;
+}
+
+/// Two or three multiplications instead of the general loop with its corrections.
+[[nodiscard, gnu::always_inline]] constexpr wide_int<3> operator*(wide_int<1> const& a, wide_int<2> const& b) noexcept {
+    detail::i128 const f = static_cast<std::int64_t>(a.limb[0]);
+    detail::i128 const low = f * static_cast<detail::i128>(b.limb[0]);
+    detail::i128 const high = f * static_cast<std::int64_t>(b.limb[1]) + (low >> 64);
+    wide_int<3> r;
+    r.limb = {static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high),
+              static_cast<std::uint64_t>(static_cast<detail::u128>(high) >> 64)};
     return r;
 }
 

@@ -118,7 +118,7 @@ void assemble_diagram(Diagram& d, Executor const& pool, run_context const& conte
         context.tick("voronoi cells", static_cast<double>(done) / static_cast<double>(block_count));
         std::size_t const todo = std::min(run_blocks, block_count - done);
         pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
-            // Scratch memory outlives the run; a range of blocks always begins at the same one.
+            // Scratch memory outlives the run.
             if (!builders[b]) builders[b] = std::make_unique<cell_builder>(d.sites, tree, box);
             for (std::size_t k = b; k < e; ++k) {
                 blocks[k].clear();
@@ -152,11 +152,13 @@ void assemble_diagram(Diagram& d, Executor const& pool, run_context const& conte
         make_room(d.corner_begin, total.face + 1, share);
         make_room(d.corners, total.corner, share);
         d.corner_begin[total.face] = static_cast<std::uint32_t>(total.corner);
-        for (std::size_t k = 0; k < todo; ++k) {
-            auto const to = static_cast<std::ptrdiff_t>(offset[k].vertex);
-            std::copy(blocks[k].own_key.begin(), blocks[k].own_key.end(), d.keys.begin() + to);
-            std::copy(blocks[k].own_position.begin(), blocks[k].own_position.end(), d.vertices.begin() + to);
-        }
+        pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
+            for (std::size_t k = b; k < e; ++k) {
+                auto const to = static_cast<std::ptrdiff_t>(offset[k].vertex);
+                std::copy(blocks[k].own_key.begin(), blocks[k].own_key.end(), d.keys.begin() + to);
+                std::copy(blocks[k].own_position.begin(), blocks[k].own_position.end(), d.vertices.begin() + to);
+            }
+        });
         pool.for_blocks(todo, 1, [&](std::size_t b, std::size_t e) {
             std::vector<std::uint32_t> borrowed;
             for (std::size_t k = b; k < e; ++k) write_faces(d, blocks[k], offset[k], vertex_begin, borrowed);
