@@ -26,7 +26,11 @@ progress::~progress() {
 }
 
 tafoni::step_control progress::show(std::string_view stage, double fraction, std::string const& note) {
-    if (style_ == progress_style::json) {
+    // A reader of lines wants each stage's start, its end, and about a hundred steps between.
+    int const percentage = static_cast<int>(fraction * 100);
+    if (style_ == progress_style::json && (stage != last_stage_ || percentage != last_percentage_)) {
+        last_stage_ = stage;
+        last_percentage_ = percentage;
         nlohmann::ordered_json line{{"stage", stage}, {"fraction", fraction}};
         if (!note.empty()) line["note"] = note;
         std::fprintf(stderr, "%s\n", line.dump().c_str());

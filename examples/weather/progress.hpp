@@ -29,6 +29,8 @@ public:
 private:
     progress_style style_;
     std::string last_line_;
+    std::string last_stage_{};
+    int last_percentage_ = -1;
     bool open_line_ = false;
 };
 
