@@ -1,11 +1,14 @@
+#include <tafoni/weathering/frost_wedging.hpp>
 #include <tafoni/rules/uptake.hpp>
 #include <tafoni/rules/wear.hpp>
 #include <tafoni/testing/laws.hpp>
+#include <tafoni/weathering/frost_wedging.hpp>
 
 #include <catch2/catch.hpp>
 
 #include <functional>
 #include <limits>
+#include <type_traits>
 
 using namespace tafoni;
 
@@ -137,4 +140,26 @@ TEST_CASE("every parameter of every rule is checked against its range, and NaN f
             }
         }
     }
+}
+
+namespace {
+
+struct rain_and_flow {
+    [[nodiscard]] vec3 draw(stream&) const { return {0, 0, -1}; }
+    [[nodiscard]] double weight(link_view const&, link_view const&, water const&) const { return 1; }
+};
+struct all_of_wear {
+    [[nodiscard]] double damage(link_view const&, double w, link_scale const&) const { return w; }
+    [[nodiscard]] double break_chance(link_view const&) const { return 0; }
+};
+
+}  // namespace
+
+TEST_CASE("a part of several roles plays the one of its member, when the others are taken or all are given") {
+    auto const after = frost_wedging{.rain = directional_rain{}, .flow = rain_and_flow{}};
+    STATIC_REQUIRE(std::is_same_v<decltype(after), frost_wedging<directional_rain, rain_and_flow> const>);
+    auto const all = wear{.harm = all_of_wear{}, .breakage = all_of_wear{}, .detachment = smaller_part_falls{}};
+    STATIC_REQUIRE(std::is_same_v<decltype(all), wear<all_of_wear, all_of_wear> const>);
+    auto const copy = frost_wedging{after};
+    STATIC_REQUIRE(std::is_same_v<decltype(copy), frost_wedging<directional_rain, rain_and_flow> const>);
 }

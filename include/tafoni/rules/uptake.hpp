@@ -13,16 +13,32 @@ namespace detail {
 struct absorption_role {
     template <class T>
     static constexpr bool fits = absorption_rule<T>;
+    template <class T>
+    static constexpr bool resembles = requires { &T::absorbed; };
+    template <class T>
+    static void expect() {
+        static_assert(fits<T>, "`absorption` takes an absorption_rule: double absorbed(link_view, water, link_scale) const");
+    }
 };
 struct soaking_role {
     template <class T>
     static constexpr bool fits = soaking_rule<T>;
+    template <class T>
+    static constexpr bool resembles = requires { &T::soak_chance; };
+    template <class T>
+    static void expect() {
+        static_assert(fits<T>, "`soaking` takes a soaking_rule: double soak_chance(link_view, water) const");
+    }
 };
+using uptake_members = bundle_members<bundle_member<absorption_role, surface_absorption>,
+                                      bundle_member<soaking_role, depletion_soaking>>;
 }  // namespace detail
 
 /// An absorption rule together with a soaking rule; models both.
 template <absorption_rule Absorption = surface_absorption, soaking_rule Soaking = depletion_soaking>
 struct uptake {
+    using members = detail::uptake_members;  ///< for deduction
+
     [[no_unique_address]] Absorption absorption{};
     [[no_unique_address]] Soaking soaking{};
 
@@ -45,8 +61,9 @@ struct uptake {
 };
 
 template <class... Parts>
-uptake(Parts...) -> uptake<detail::pick_role_t<detail::absorption_role, surface_absorption, Parts...>,
-                           detail::pick_role_t<detail::soaking_role, depletion_soaking, Parts...>>;
+    requires(!detail::bundle_of<detail::uptake_members, Parts> && ...)
+uptake(Parts...) -> uptake<detail::pick_part_t<detail::uptake_members, 0, Parts...>,
+                           detail::pick_part_t<detail::uptake_members, 1, Parts...>>;
 
 static_assert(absorption_rule<uptake<>> && soaking_rule<uptake<>>);
 

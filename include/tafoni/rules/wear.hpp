@@ -14,21 +14,44 @@ namespace detail {
 struct damage_role {
     template <class T>
     static constexpr bool fits = damage_rule<T>;
+    template <class T>
+    static constexpr bool resembles = requires { &T::damage; };
+    template <class T>
+    static void expect() {
+        static_assert(fits<T>, "`harm` takes a damage_rule: double damage(link_view, double, link_scale) const");
+    }
 };
 struct breakage_role {
     template <class T>
     static constexpr bool fits = breakage_rule<T>;
+    template <class T>
+    static constexpr bool resembles = requires { &T::break_chance; };
+    template <class T>
+    static void expect() {
+        static_assert(fits<T>, "`breakage` takes a breakage_rule: double break_chance(link_view) const");
+    }
 };
 struct detachment_role {
     template <class T>
     static constexpr bool fits = detachment_rule<T>;
+    template <class T>
+    static constexpr bool resembles = requires { &T::decide; };
+    template <class T>
+    static void expect() {
+        static_assert(fits<T>, "`detachment` takes a detachment_rule: falling decide(part, part) const");
+    }
 };
+using wear_members =
+    bundle_members<bundle_member<damage_role, surface_damage>, bundle_member<breakage_role, low_life_breakage>,
+                   bundle_member<detachment_role, smaller_part_falls>>;
 }  // namespace detail
 
 /// A damage rule, a breakage rule and a detachment rule in one piece; models all three.
 template <damage_rule Damage = surface_damage, breakage_rule Breakage = low_life_breakage,
           detachment_rule Detachment = smaller_part_falls>
 struct wear {
+    using members = detail::wear_members;  ///< for deduction
+
     [[no_unique_address]] Damage harm{};
     [[no_unique_address]] Breakage breakage{};
     [[no_unique_address]] Detachment detachment{};
@@ -48,9 +71,10 @@ struct wear {
 };
 
 template <class... Parts>
-wear(Parts...) -> wear<detail::pick_role_t<detail::damage_role, surface_damage, Parts...>,
-                       detail::pick_role_t<detail::breakage_role, low_life_breakage, Parts...>,
-                       detail::pick_role_t<detail::detachment_role, smaller_part_falls, Parts...>>;
+    requires(!detail::bundle_of<detail::wear_members, Parts> && ...)
+wear(Parts...) -> wear<detail::pick_part_t<detail::wear_members, 0, Parts...>,
+                       detail::pick_part_t<detail::wear_members, 1, Parts...>,
+                       detail::pick_part_t<detail::wear_members, 2, Parts...>>;
 
 static_assert(damage_rule<wear<>> && breakage_rule<wear<>> && detachment_rule<wear<>>);
 
