@@ -18,7 +18,7 @@ struct air_flood {
     struct state {
         std::vector<std::uint8_t> open{};        ///< per cell: 1 = air with a way out
         std::vector<std::uint32_t> queue{};      ///< scratch
-        detail::exposure_log log{};              ///< scratch
+        exposure_log log{};                      ///< scratch
     };
 
     /// O(cells + links).
@@ -100,7 +100,7 @@ private:
     static void set(Network const& n, std::span<cell_state const> cells, state const& s, std::span<link_state> links,
                     link_index l) {
         auto const ends = n.link_cells(l);
-        int const solid = detail::solid_sides(n, cells, l);
+        int const solid = solid_sides(n, cells, l);
         link_state& state_of = links[l.value];
         if (solid == 2) {
             if (state_of != link_state::broken) state_of = link_state::bonded;

@@ -51,7 +51,9 @@ void require_states(Network const& n, std::span<cell_state const> cells, std::sp
                         {.kind = entity::attribute, .value = static_cast<double>(cells.size())});
 }
 
-/// How many sides of a link are rock: 0, 1 or 2.
+}  // namespace detail
+
+/// How many sides of a link are rock: 0, 1 or 2. For those who write an exposure. O(1).
 template <class Network>
 [[nodiscard]] int solid_sides(Network const& n, std::span<cell_state const> cells, link_index l) {
     auto const ends = n.link_cells(l);
@@ -59,11 +61,16 @@ template <class Network>
     return first + (ends[1].valid() && cells[ends[1].value] != cell_state::air ? 1 : 0);
 }
 
-/// Turns the states before and after an update into lists. Links that the update never touched are not given.
+/// Turns the states before and after an update into an `exposure_change`. For those who write an exposure.
+///
+/// In `update`, `touch` a link before (or instead of) changing it, as often as it comes up; `finish` compares
+/// what the first touch saw with what is there now. O(touched log touched).
 class exposure_log {
 public:
+    /// Link `l` may change; it is `before` now.
     void touch(link_index l, link_state before) { touched_.push_back({l, touched_.size(), before}); }
 
+    /// Fills `change` for the links that were touched, and forgets them.
     void finish(std::span<link_state const> links, exposure_change& change) {
         change.opened.clear();
         change.closed.clear();
@@ -89,10 +96,9 @@ private:
     std::vector<entry> touched_{};
 };
 
-}  // namespace detail
-
 /// Keeps the states of links up to date while cells turn into air.
 ///
+/// `start` and `update` are templates over the network: the concept asks with the least one there is.
 /// The policy is constant; its memory is `E::state`, owned by the run and copyable (a snapshot).
 /// `start(network, cells, links)` brings `links` into line with `cells` as if all air had been there from
 /// the beginning, and returns the memory (to resume a run, restore its link states after `start`);

@@ -19,7 +19,7 @@ struct surface_walk {
     struct state {
         std::vector<link_index> queue{};     ///< scratch
         std::vector<link_index> fresh{};     ///< scratch
-        detail::exposure_log log{};          ///< scratch
+        exposure_log log{};                  ///< scratch
     };
 
     /// The input's skin on rock is exterior; then as by `update`. O(links + neighbours).
@@ -57,7 +57,7 @@ private:
     template <class Network>
     static void set(Network const& n, std::span<cell_state const> cells, state& s, std::span<link_state> links,
                     link_index l) {
-        int const solid = detail::solid_sides(n, cells, l);
+        int const solid = solid_sides(n, cells, l);
         link_state& state_of = links[l.value];
         if (solid == 0) {
             state_of = link_state::gone;
