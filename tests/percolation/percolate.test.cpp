@@ -366,3 +366,31 @@ TEST_CASE("a view shows no life and no resistance off the bonds, and normals out
     CHECK(table.view(bond).normal == vec3(-1, 0, 0));
     CHECK(table.mean_area(false) == 1);
 }
+
+TEST_CASE("rain whose direction is not of unit length is refused") {
+    struct strong_rain {
+        double length = 1;
+        [[nodiscard]] vec3 draw(stream&) const { return {0, 0, -length}; }
+    };
+    box_network const n(2, 2, 2);
+    auto const table = fresh_table(n);
+    auto const skin = fresh_skin(table);
+    path_scratch memory;
+    std::vector<path_visit> visits;
+    auto const walk = [&](double length) {
+        strong_rain const rain{length};
+        return percolate(table, skin, policies(rain, facing, gravity, drinking, soaking), numbers(), 3, visits, memory);
+    };
+    CHECK(walk(1 + 0.9e-6).entry.valid());
+    CHECK(walk(1 - 0.9e-6).entry.valid());
+    for (double const bad : {0.0, 0.5, 1 + 2e-6, 1 - 2e-6, 2.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+        try {
+            (void)walk(bad);
+            FAIL("length " << bad << " passed");
+        } catch (invalid_input const& e) {
+            CHECK(e.code() == errc::out_of_range);
+            CHECK(std::string(e.what()).find("path 3") != std::string::npos);
+        }
+    }
+}

@@ -88,6 +88,18 @@ inline double require_share(char const* who, link_index l, double value) {
     return value;
 }
 
+/// Throws unless the rain's direction has unit length within 1e-6.
+inline void require_direction(vec3 const& d, std::uint64_t path) {
+    double const squared = dot(d, d);
+    if (squared >= 1 - 1e-6 && squared <= 1 + 1e-6) return;
+    double const l = length(d);
+    if (l >= 1 - 1e-6 && l <= 1 + 1e-6) return;
+    fail<invalid_input>(errc::out_of_range,
+                        "rain: a policy drew a direction of length " + number_text(l) + " for path " +
+                            std::to_string(path) + ", allowed 1 (unit vector)",
+                        {.kind = entity::parameter, .value = l, .limit = 1});
+}
+
 /// Draws one of Neigh(here) by flow weight; not valid when all weights are 0. O(Neigh).
 template <class Network, class Flow>
 [[nodiscard]] link_index next_link(link_table<Network> const& table, Flow const& flow, link_index here, water const& w,
@@ -130,7 +142,8 @@ template <class Network, class Flow>
 /// stream(seed, stage, path): one stream per stage, so no policy shifts another's draws.
 /// Cost O(visits x Neigh).
 /// \throws invalid_input  `out_of_range` when a weight or an absorption is negative or not finite, or an
-///                        acceptance, a chance or a share is outside [0, 1]; it names the link.
+///                        acceptance, a chance or a share is outside [0, 1]; it names the link. Also when the
+///                        rain's direction is not of unit length within 1e-6.
 struct percolate_fn {
     template <class Network, class Policies>
     path_trace operator()(link_table<Network> const& table, entry_tree const& skin, Policies const& policies,
@@ -139,6 +152,7 @@ struct percolate_fn {
         path_trace trace;
         stream rain(options.seed, stage::rain, path);
         vec3 const direction = policies.rain.draw(rain);
+        detail::require_direction(direction, path);
         stream entry(options.seed, stage::entry, path);
         double const key[3] = {direction[0], direction[1], direction[2]};
         trace.entry = skin.draw(
