@@ -7,6 +7,7 @@
 #include <tafoni/core/elementary.hpp>
 #include <tafoni/core/error.hpp>
 #include <tafoni/core/executor.hpp>
+#include <tafoni/core/first_error.hpp>
 #include <tafoni/core/index.hpp>
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/random_normal.hpp>
