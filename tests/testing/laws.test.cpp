@@ -94,6 +94,7 @@ TEST_CASE("law checks find structures that break their laws") {
     CHECK_FALSE(laws::runs_blocks(twice{}).empty());
     int calls = 0;
     CHECK_FALSE(laws::sites(moody_sites{&calls}, solid{}).empty());
+    CHECK_FALSE(laws::sites([](solid const&, std::uint64_t) { return std::vector<vec3>{}; }, solid{}).empty());
     CHECK_FALSE(laws::exposure(nothing_opens{}, box_network(3, 3, 3)).empty());
     box_network n(2, 2, 2);
     CHECK(laws::network(n).empty());

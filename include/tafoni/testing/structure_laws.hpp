@@ -192,7 +192,7 @@ template <exposure_policy E, link_network N>
     return broken;
 }
 
-/// Site pattern: pure, finite points.
+/// Site pattern: pure, finite points, at least one.
 template <site_pattern P>
 [[nodiscard]] std::vector<std::string> sites(P const& pattern, solid const& s) {
     std::vector<std::string> broken;
@@ -202,6 +202,10 @@ template <site_pattern P>
         bool const equal = a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](vec3 const& p, vec3 const& q) {
                                return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
                            });
+        if (a.empty()) {
+            broken.push_back("a pattern returns at least one site; got none");
+            return broken;
+        }
         if (!std::all_of(a.begin(), a.end(), [](vec3 const& p) { return is_finite(p); })) {
             broken.push_back("sites are finite");
             return broken;
