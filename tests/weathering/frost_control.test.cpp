@@ -224,3 +224,43 @@ TEST_CASE("the report tells the time of each stage") {
     CHECK(run.report().seconds.walk == 0);
     CHECK(run.run({.paths = 100}).seconds.walk > 0);  // one by one: an estimate
 }
+
+TEST_CASE("where no skin is left, paths are booked at once, with the snapshots and counts of a walk") {
+    box_network const n(2, 2, 2);
+    std::vector<cell_index> all;
+    for (std::size_t c = 0; c < n.cell_count(); ++c) all.push_back(cell_index{c});
+    frost_run run(n, slanting());
+    run.mark(all, cell_state::air);
+    std::vector<std::uint64_t> seen;
+    std::size_t ticks = 0;
+    run_context context;
+    context.on_progress = [&](auto const&) { return ++ticks, step_control::proceed; };
+    auto const some = run.run({.paths = 1000, .batch = 64, .snapshot_every = 300, .on_snapshot = [&](std::uint64_t paths) {
+                                   seen.push_back(paths);
+                                   return step_control::proceed;
+                               }}, context);
+    CHECK(seen == std::vector<std::uint64_t>{320, 640, 960});
+    CHECK(some.paths == 1000);
+    CHECK(some.paths_without_entry == 1000);
+    CHECK(some.stopped == stop_reason::finished);
+    CHECK(ticks > 10);
+    auto const many = run.run({.paths = 100'000'000'000});
+    CHECK(many.paths_without_entry == 100'000'001'000);
+    CHECK(many.seconds.run < 5);
+    auto const none = run.run({.paths = 50, .stop = stop_when::nothing_enters});
+    CHECK(none.paths == many.paths);
+    CHECK(none.stopped == stop_reason::nothing_enters);
+}
+
+TEST_CASE("a run that stops when nothing enters stops as soon as the last skin is gone") {
+    box_network const n(2, 2, 2);
+    struct all_fall {
+        [[nodiscard]] falling decide(part const&, part const&) const { return falling::both; }
+    };
+    frost_run run(n, frost_wedging{.wear = wear{.detachment = all_fall{}}});
+    auto const report = run.run({.paths = 1'000'000, .stop = stop_when::nothing_enters});
+    CHECK(report.stopped == stop_reason::nothing_enters);
+    CHECK(report.cells_detached == 8);
+    CHECK(report.blocks >= 1);
+    CHECK(run.blocks().back().path == report.paths);
+}

@@ -34,10 +34,15 @@ struct frost_options {
 };
 
 /// What ends a run early.
-enum class stop_when : std::uint8_t { never, first_break, first_detachment };
+enum class stop_when : std::uint8_t {
+    never,             ///< where no skin is left, the remaining paths are booked without entry, at once
+    first_break,
+    first_detachment,
+    nothing_enters,    ///< no skin is left where rain could enter
+};
 
 /// Why a run ended.
-enum class stop_reason : std::uint8_t { finished, first_break, first_detachment, observer };
+enum class stop_reason : std::uint8_t { finished, first_break, first_detachment, observer, nothing_enters };
 
 /// One call of `run`.
 struct frost_schedule {

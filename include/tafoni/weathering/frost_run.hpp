@@ -42,7 +42,8 @@ public:
     /// Adds `schedule.paths` paths.
     ///
     /// Progress is reported under the stage "weather"; an observer that answers `stop`, there or at a
-    /// snapshot, ends the run after the path just completed. Mean cost per path O(links met x Neigh).
+    /// snapshot, ends the run after the path just completed. Mean cost per path O(links met x Neigh); where no
+    /// skin is left, O(1) for all that remain.
     /// \throws invalid_input  for a schedule out of range, or when a policy answers out of its range.
     template <executor Executor = inline_executor>
     frost_report run(frost_schedule const& schedule, run_context const& context = {}, Executor const& threads = {}) {
@@ -61,8 +62,22 @@ public:
             std::uint64_t const broken = core_.state.count.links_broken;
             std::size_t const blocks = core_.state.blocks.size();
             std::uint64_t n = schedule.batch - before % schedule.batch;
+            bool const barred = core_.skin.total() == 0;  // and stays so: nothing wears, so nothing opens
+            if (barred && schedule.stop == stop_when::nothing_enters) {
+                stopped_ = stop_reason::nothing_enters;
+                if (context.on_progress) (void)context.on_progress({"weather", 1});
+                break;
+            }
+            if (barred) {
+                std::uint64_t const last = context.on_progress ? std::min(next_tick, schedule.paths) : schedule.paths;
+                n = quiet_paths(schedule, before, last - done);
+            }
             if (n > schedule.paths - done) n = schedule.paths - done;
-            core_.step(static_cast<std::size_t>(n), threads);
+            if (barred) {
+                core_.skip(n);
+            } else {
+                core_.step(static_cast<std::size_t>(n), threads);
+            }
             done += n;
             if (schedule.stop == stop_when::first_break && core_.state.count.links_broken != broken) {
                 stopped_ = stop_reason::first_break;
@@ -245,6 +260,11 @@ public:
     [[nodiscard]] std::vector<std::byte> checkpoint() const { return detail::write_checkpoint(core_); }
 
     /// Goes on from a checkpoint of the same network, policies and options. Strong guarantee.
+    ///
+    /// Policies are told apart by their `parameters()`, else by their bytes where these alone say whether two
+    /// are equal (whole numbers; not floating point), and by their `static constexpr std::string_view name`,
+    /// else by their size. The exposure counts as a policy. One that holds a pointer needs `parameters()`, or
+    /// its checkpoints die with the pointer. What none of these tells, the caller must know.
     /// \throws io_error  `wrong_format`, `truncated` or `bad_syntax` for bytes that are no checkpoint,
     ///                   `checkpoint_mismatch` for one of another network or other parameters.
     void resume(std::span<std::byte const> bytes) {
@@ -255,6 +275,13 @@ public:
     }
 
 private:
+    /// At least `many` paths, in whole batches, but no further than the next snapshot.
+    static std::uint64_t quiet_paths(frost_schedule const& schedule, std::uint64_t before, std::uint64_t many) noexcept {
+        std::uint64_t const every = schedule.snapshot_every;
+        if (every > 0 && schedule.on_snapshot && every - before % every < many) many = every - before % every;
+        std::uint64_t const over = (before + many) % schedule.batch;
+        return over == 0 ? many : many + (schedule.batch - over);
+    }
     template <class Policy>
     static Policy checked(Policy policy) {
         detail::validate_policies(policy);

@@ -157,6 +157,12 @@ public:
         });
     }
 
+    /// Books `n` paths while no skin has weight: what `step` would do.
+    void skip(std::uint64_t n) noexcept {
+        state.count.paths += n;
+        if (water_unit::from(options.water) > 0) state.count.without_entry += n;
+    }
+
     /// Runs `body`; when it throws, lives, cells, counters and blocks are as before.
     template <class Body>
     void transact(Body const& body) {
