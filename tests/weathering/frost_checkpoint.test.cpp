@@ -146,3 +146,44 @@ TEST_CASE("a forged checkpoint with a right checksum is refused, or makes a run 
     CHECK(refused > 1000);
     CHECK(taken > 100);
 }
+
+namespace {
+
+struct stepped_flow {
+    int steps = 1;
+    [[nodiscard]] double weight(link_view const&, link_view const& there, water const&) const {
+        return there.area * steps;
+    }
+};
+struct plain_flow {
+    [[nodiscard]] double weight(link_view const&, link_view const& there, water const&) const { return there.area; }
+};
+struct named_flow : plain_flow {
+    static constexpr std::string_view name = "named";
+};
+struct other_flow : plain_flow {
+    static constexpr std::string_view name = "other";
+};
+struct named_flood : air_flood {
+    static constexpr std::string_view name = "mine";
+};
+
+template <class A, class B, class Exposure = air_flood>
+errc exchanged(A const& from, B const& to, Exposure const& exposure = {}) {
+    box_network const n(2, 2, 2);
+    frost_run const run(n, frost_wedging{.flow = from});
+    frost_run other(n, frost_wedging{.flow = to}, {}, exposure);
+    return refusal(other, run.checkpoint());
+}
+
+}  // namespace
+
+TEST_CASE("policies without parameters() are told apart by bytes, by name or by size, and so is the exposure") {
+    CHECK(exchanged(stepped_flow{2}, stepped_flow{2}) == errc{});
+    CHECK(exchanged(stepped_flow{2}, stepped_flow{3}) == errc::checkpoint_mismatch);
+    CHECK(exchanged(stepped_flow{1}, plain_flow{}) == errc::checkpoint_mismatch);
+    CHECK(exchanged(named_flow{}, named_flow{}) == errc{});
+    CHECK(exchanged(named_flow{}, other_flow{}) == errc::checkpoint_mismatch);
+    CHECK(exchanged(named_flow{}, plain_flow{}) == errc::checkpoint_mismatch);
+    CHECK(exchanged(plain_flow{}, plain_flow{}, named_flood{}) == errc::checkpoint_mismatch);
+}

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -48,7 +49,27 @@ template <class Network>
     return h.value();
 }
 
-/// Options, the `parameters()` of all policies that have them, and the resistance as read. O(links).
+/// What tells two policies apart without help of the compiler's names, which differ between compilers.
+/// An empty policy has a size of 1 and no bytes that say anything.
+template <class Policy>
+void add_policy(number_hash& h, Policy const& policy) {
+    if constexpr (requires { policy.parameters(); }) {
+        for (double const v : policy.parameters()) h.add(v);
+    } else if constexpr (std::is_trivially_copyable_v<Policy> && std::has_unique_object_representations_v<Policy> &&
+                         !std::is_empty_v<Policy>) {
+        for (auto const byte : std::bit_cast<std::array<unsigned char, sizeof(Policy)>>(policy)) {
+            h.add(std::uint64_t{byte});
+        }
+    }
+    if constexpr (requires { std::string_view(Policy::name); }) {
+        for (char const c : std::string_view(Policy::name)) h.add(std::uint64_t{static_cast<unsigned char>(c)});
+    } else {
+        h.add(std::uint64_t{sizeof(Policy)});
+    }
+    h.add(std::uint64_t{0x5EA});
+}
+
+/// Options, all policies, the exposure, and the resistance as read. O(links).
 template <class Network, class Process, class Exposure>
 [[nodiscard]] std::uint64_t parameter_hash(frost_core<Network, Process, Exposure> const& core) {
     number_hash h;
@@ -56,14 +77,9 @@ template <class Network, class Process, class Exposure>
     h.add(core.options.seed);
     h.add(static_cast<std::uint64_t>(core.options.mean));
     h.add(static_cast<std::uint64_t>(core.options.longest_path));
-    auto const add = [&h](auto const& policy) {
-        if constexpr (requires { policy.parameters(); }) {
-            for (double const v : policy.parameters()) h.add(v);
-        }
-        h.add(std::uint64_t{0x5EA});
-    };
+    auto const add = [&h](auto const& policy) { add_policy(h, policy); };
     visit_policies(core.process, add);
-    if constexpr (requires { core.exposure.parameters(); }) add(core.exposure);
+    visit_policies(core.exposure, add);
     for (std::size_t i = 0; i < core.table.size(); ++i) h.add(core.table[link_index{i}].resistance);
     return h.value();
 }
