@@ -120,7 +120,7 @@ else
         built bench all
     else
         left_out="the plain clang build (its fast tests ran under the sanitizers), slow tests with clang,
-the paper's scenes under the sanitizers, benchmarks"
+the paper's scenes under the sanitizers, fuzzing of whole algorithms, benchmarks"
     fi
 
     if [ $mode = full ]; then

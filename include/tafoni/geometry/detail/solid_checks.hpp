@@ -105,6 +105,12 @@ inline void measure(char const* who, solid& s) {
                            std::string(who) + ": the surface of " + std::to_string(n) + " triangles encloses no volume",
                            {.value = std::ldexp(six_volume / 6, 3 * exponent), .limit = 0});
     }
+    // Shells may each look outwards and still, where they cut themselves, turn more inside out than not.
+    if (six_volume < 0) {
+        fail<bad_topology>(errc::inverted_orientation,
+                           std::string(who) + ": the surface encloses a negative volume; its faces point inwards",
+                           {.value = std::ldexp(six_volume / 6, 3 * exponent), .limit = 0});
+    }
     s.volume = std::ldexp(six_volume / 6, 3 * exponent);
     s.area = std::ldexp(pairwise_sum(0, n, [&](std::size_t t) { return terms[t].double_area; }) / 2, 2 * exponent);
 }
