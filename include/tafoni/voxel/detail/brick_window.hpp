@@ -1,0 +1,108 @@
+/// \file
+/// The bits of one brick and of a margin around it, side by side.
+#ifndef TAFONI_VOXEL_DETAIL_BRICK_WINDOW_HPP
+#define TAFONI_VOXEL_DETAIL_BRICK_WINDOW_HPP
+
+#include <tafoni/voxel/sparse_grid.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tafoni::detail {
+
+/// 32 KiB: rows along z of up to 64 voxels, so that whatever lies within 16 voxels of a brick's voxel is in
+/// one word per column and in the first-level cache.
+class brick_window {
+public:
+    static constexpr int widest = 16;
+
+    /// O((32 + 2 margin)^2). `margin` in 0 .. `widest`.
+    void gather(sparse_grid const& grid, voxel_plane plane, std::size_t brick, int margin) {
+        margin_ = margin;
+        voxel const low = grid.brick_corner(brick);
+        auto const& bricks = grid.bricks();
+        std::array<std::int32_t, 3> const at{low.x >> 5, low.y >> 5, low.z >> 5};
+        for (int dy = -1; dy <= 1; ++dy) {
+            for (int dx = -1; dx <= 1; ++dx) {
+                if (margin == 0 && (dx != 0 || dy != 0)) continue;
+                int const x_lo = dx < 0 ? 32 - margin : 0;
+                int const x_hi = dx > 0 ? margin : 32;
+                int const y_lo = dy < 0 ? 32 - margin : 0;
+                int const y_hi = dy > 0 ? margin : 32;
+                bool const beside = at[0] + dx < 0 || at[0] + dx >= bricks[0] || at[1] + dy < 0 ||
+                                    at[1] + dy >= bricks[1];
+                auto const word = [&](int dz, std::size_t column) -> std::uint64_t {
+                    if (beside || at[2] + dz < 0 || at[2] + dz >= bricks[2]) return 0;
+                    auto const step = static_cast<std::ptrdiff_t>(bricks[0]);
+                    auto const b = static_cast<std::ptrdiff_t>(brick) +
+                                   dx + step * (dy + static_cast<std::ptrdiff_t>(bricks[1]) * dz);
+                    return grid.plane_word(plane, static_cast<std::size_t>(b), column);
+                };
+                for (int y = y_lo; y < y_hi; ++y) {
+                    for (int x = x_lo; x < x_hi; ++x) {
+                        auto const column = static_cast<std::size_t>(x + 32 * y);
+                        std::uint64_t bits = word(0, column) << margin;
+                        if (margin > 0) {
+                            bits |= word(-1, column) >> (32 - margin);
+                            bits |= word(1, column) << (32 + margin);
+                        }
+                        row_at(x + 32 * dx, y + 32 * dy) = bits & row_mask();
+                    }
+                }
+            }
+        }
+        patch_border(grid, plane, low);
+    }
+
+    [[nodiscard]] int margin() const noexcept { return margin_; }
+    /// Bit k is the voxel at height k - margin of the column (x, y), all relative to the brick's lowest voxel.
+    [[nodiscard]] std::uint64_t row(int x, int y) const noexcept {
+        return rows_[static_cast<std::size_t>(x + margin_ + 64 * (y + margin_))];
+    }
+    /// Row (x, y) is at x + margin + 64 (y + margin).
+    [[nodiscard]] std::uint64_t const* rows() const noexcept { return rows_.data(); }
+
+private:
+    [[nodiscard]] std::uint64_t& row_at(int x, int y) noexcept {
+        return rows_[static_cast<std::size_t>(x + margin_ + 64 * (y + margin_))];
+    }
+    [[nodiscard]] std::uint64_t row_mask() const noexcept { return ~std::uint64_t{0} >> (32 - 2 * margin_); }
+
+    /// What lies beyond the grid shows rock or goes on as the border says.
+    void patch_border(sparse_grid const& grid, voxel_plane plane, voxel low) {
+        auto const& n = grid.size();
+        auto const& sides = grid.border().sides;
+        if (std::all_of(sides.begin(), sides.end(), [](border_kind k) { return k == border_kind::air; })) return;
+        std::array<std::int32_t, 3> const at{low.x, low.y, low.z};
+        bool inside = true;
+        for (std::size_t d = 0; d < 3; ++d) {
+            inside = inside && at[d] - margin_ >= 0 && at[d] + 32 + margin_ <= static_cast<std::int32_t>(n[d]);
+        }
+        if (inside) return;
+        for (int y = -margin_; y < 32 + margin_; ++y) {
+            for (int x = -margin_; x < 32 + margin_; ++x) {
+                bool const beside = static_cast<std::size_t>(low.x + x) >= n[0] ||
+                                    static_cast<std::size_t>(low.y + y) >= n[1];
+                for (int z = -margin_; z < 32 + margin_; ++z) {
+                    bool const within = static_cast<std::size_t>(low.z + z) < n[2];
+                    if (within && !beside) continue;
+                    voxel_state const s = grid.state({low.x + x, low.y + y, low.z + z});
+                    bool const in_plane = plane == voxel_plane::solid  ? s != voxel_state::air
+                                          : plane == voxel_plane::rock ? s == voxel_state::rock
+                                                                       : s == voxel_state::colluvium;
+                    std::uint64_t const bit = std::uint64_t{1} << (z + margin_);
+                    row_at(x, y) = in_plane ? row_at(x, y) | bit : row_at(x, y) & ~bit;
+                }
+            }
+        }
+    }
+
+    std::array<std::uint64_t, 4096> rows_{};
+    int margin_ = 0;
+};
+
+}  // namespace tafoni::detail
+
+#endif
