@@ -15,6 +15,8 @@
 #include <tafoni/core/sum.hpp>
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/core/vector.hpp>
+#include <tafoni/curvature/concepts.hpp>
+#include <tafoni/curvature/tensor_fit.hpp>
 #include <tafoni/decomposition/concepts.hpp>
 #include <tafoni/decomposition/displaced_faces.hpp>
 #include <tafoni/decomposition/given_sites.hpp>
@@ -40,6 +42,7 @@
 #include <tafoni/field/blend.hpp>
 #include <tafoni/field/concepts.hpp>
 #include <tafoni/field/constant.hpp>
+#include <tafoni/field/durability_profile.hpp>
 #include <tafoni/field/fractal_noise.hpp>
 #include <tafoni/field/grid_field.hpp>
 #include <tafoni/field/jittered.hpp>
@@ -69,7 +72,9 @@
 #include <tafoni/geometry/solid.hpp>
 #include <tafoni/geometry/span_mesh.hpp>
 #include <tafoni/geometry/terrain_solid.hpp>
+#include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/geometry/triangulate.hpp>
+#include <tafoni/geometry/vertex_rings.hpp>
 #include <tafoni/geometry/wide_int.hpp>
 #include <tafoni/geometry/winding_number.hpp>
 #include <tafoni/graph/air_flood.hpp>
@@ -87,6 +92,7 @@
 #include <tafoni/io/obj.hpp>
 #include <tafoni/io/ply.hpp>
 #include <tafoni/io/polyline_set.hpp>
+#include <tafoni/io/read_durability.hpp>
 #include <tafoni/io/read_mesh.hpp>
 #include <tafoni/io/read_obj.hpp>
 #include <tafoni/io/read_ply.hpp>
@@ -120,6 +126,14 @@
 #include <tafoni/rules/uptake.hpp>
 #include <tafoni/rules/wear.hpp>
 #include <tafoni/version.hpp>
+#include <tafoni/voxel/bit_grid.hpp>
+#include <tafoni/voxel/concepts.hpp>
+#include <tafoni/voxel/dense_grid.hpp>
+#include <tafoni/voxel/grid_frame.hpp>
+#include <tafoni/voxel/span_grid.hpp>
+#include <tafoni/voxel/sparse_grid.hpp>
+#include <tafoni/voxel/voxel.hpp>
+#include <tafoni/voxel/voxel_change.hpp>
 #include <tafoni/weathering/frost_checkpoint.hpp>
 #include <tafoni/weathering/frost_presets.hpp>
 #include <tafoni/weathering/frost_report.hpp>
