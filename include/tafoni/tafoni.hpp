@@ -16,7 +16,10 @@
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/curvature/concepts.hpp>
+#include <tafoni/curvature/cotangent.hpp>
+#include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/curvature/tensor_fit.hpp>
+#include <tafoni/curvature/vertex_normals.hpp>
 #include <tafoni/decomposition/concepts.hpp>
 #include <tafoni/decomposition/displaced_faces.hpp>
 #include <tafoni/decomposition/given_sites.hpp>
@@ -127,11 +130,25 @@
 #include <tafoni/rules/wear.hpp>
 #include <tafoni/version.hpp>
 #include <tafoni/voxel/bit_grid.hpp>
+#include <tafoni/voxel/bubble.hpp>
+#include <tafoni/voxel/bubble_shapes.hpp>
+#include <tafoni/voxel/bubble_stencil.hpp>
 #include <tafoni/voxel/concepts.hpp>
+#include <tafoni/voxel/copy_states.hpp>
 #include <tafoni/voxel/dense_grid.hpp>
+#include <tafoni/voxel/disc_bubble.hpp>
+#include <tafoni/voxel/ellipsoid_bubble.hpp>
+#include <tafoni/voxel/fallen_block.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
+#include <tafoni/voxel/gumdrop_bubble.hpp>
+#include <tafoni/voxel/joints.hpp>
+#include <tafoni/voxel/predicate_bubble.hpp>
+#include <tafoni/voxel/rates.hpp>
+#include <tafoni/voxel/rockfall.hpp>
+#include <tafoni/voxel/rockfall_options.hpp>
 #include <tafoni/voxel/span_grid.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
+#include <tafoni/voxel/sphere_bubble.hpp>
 #include <tafoni/voxel/voxel.hpp>
 #include <tafoni/voxel/voxel_change.hpp>
 #include <tafoni/weathering/frost_checkpoint.hpp>
@@ -139,6 +156,9 @@
 #include <tafoni/weathering/frost_report.hpp>
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
+#include <tafoni/weathering/voxel_options.hpp>
+#include <tafoni/weathering/voxel_report.hpp>
+#include <tafoni/weathering/voxel_weathering.hpp>
 #include <tafoni/weathering/weathered_surface.hpp>
 
 #endif

@@ -29,6 +29,9 @@ struct grid_frame {
         return static_cast<std::size_t>(v.x) < size[0] && static_cast<std::size_t>(v.y) < size[1] &&
                static_cast<std::size_t>(v.z) < size[2];
     }
+    friend bool operator==(grid_frame const& a, grid_frame const& b) noexcept {
+        return a.size == b.size && a.spacing == b.spacing && a.origin == b.origin;
+    }
     [[nodiscard]] vec3 centre(voxel v) const noexcept {
         return vec3{origin[0] + spacing[0] * (static_cast<double>(v.x) + 0.5),
                     origin[1] + spacing[1] * (static_cast<double>(v.y) + 0.5),

@@ -5,9 +5,9 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/voxel/concepts.hpp>
+#include <tafoni/voxel/detail/brick_rows.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -61,11 +61,9 @@ public:
         sparse_grid out({.size = access::size(grid), .spacing = access::spacing(grid), .origin = access::origin(grid)},
                         up, border);
         for (std::size_t b = 0; b < out.brick_count(); ++b) {
-            out.fill_brick(b, [&](voxel v) {
-                voxel const u = out.to_user(v);
-                return access::state(grid, static_cast<std::size_t>(u.x), static_cast<std::size_t>(u.y),
-                                     static_cast<std::size_t>(u.z));
-            });
+            brick bits{};
+            detail::read_brick(grid, detail::brick_rows(out.rotation_, out.size_, out.brick_corner(b)), bits);
+            out.assign_brick(b, bits);
         }
         return out;
     }
@@ -212,7 +210,9 @@ public:
     }
     /// Bits of the voxels of a brick's column that are inside the grid.
     [[nodiscard]] std::uint32_t inside_word(std::size_t b, std::size_t column) const noexcept {
-        voxel const low = brick_corner(b);
+        return inside_word(brick_corner(b), column);
+    }
+    [[nodiscard]] std::uint32_t inside_word(voxel low, std::size_t column) const noexcept {
         if (static_cast<std::size_t>(low.x) + (column & 31) >= size_[0] ||
             static_cast<std::size_t>(low.y) + (column >> 5) >= size_[1]) {
             return 0;
@@ -226,7 +226,8 @@ public:
         if (slot >= first_stored) return *pool_[slot - first_stored];
         auto fresh = std::make_unique<brick>();
         if (slot == all_rock) {
-            for (std::size_t c = 0; c < 1024; ++c) fresh->solid[c] = inside_word(b, c);
+            voxel const low = brick_corner(b);
+            for (std::size_t c = 0; c < 1024; ++c) fresh->solid[c] = inside_word(low, c);
         }
         std::uint32_t at = 0;
         if (free_.empty()) {
@@ -244,36 +245,42 @@ public:
     void compact(std::size_t b) {
         std::uint32_t const slot = table_[b];
         if (slot < first_stored) return;
-        brick const& stored = *pool_[slot - first_stored];
-        bool air = true;
-        bool rock = true;
-        for (std::size_t c = 0; c < 1024 && (air || rock); ++c) {
-            air = air && stored.solid[c] == 0;
-            rock = rock && stored.solid[c] == inside_word(b, c) && stored.colluvium[c] == 0;
-        }
-        if (!air && !rock) return;
+        std::uint32_t const as = uniform(brick_corner(b), *pool_[slot - first_stored]);
+        if (as == first_stored) return;
         free_.push_back(slot - first_stored);
         pool_[slot - first_stored].reset();
-        table_[b] = air ? all_air : all_rock;
+        table_[b] = as;
+    }
+    /// Replaces a brick by bits of which none lie beyond the grid; stores them where it must. O(1).
+    void assign_brick(std::size_t b, brick const& bits) {
+        std::uint32_t const as = uniform(brick_corner(b), bits);
+        if (as == first_stored) {
+            make_mixed(b) = bits;
+            return;
+        }
+        if (std::uint32_t const slot = table_[b]; slot >= first_stored) {
+            free_.push_back(slot - first_stored);
+            pool_[slot - first_stored].reset();
+        }
+        table_[b] = as;
     }
     /// Sets every voxel of a brick to state(voxel), asked along z first. O(32^3).
     template <class State>
     void fill_brick(std::size_t b, State const& state) {
         voxel const low = brick_corner(b);
-        auto fresh = std::make_unique<brick>();
+        brick fresh{};
         for (std::size_t c = 0; c < 1024; ++c) {
-            std::uint32_t left = inside_word(b, c);
+            std::uint32_t left = inside_word(low, c);
             for (; left != 0; left &= left - 1) {
                 int const z = std::countr_zero(left);
                 auto const s = state(voxel{low.x + static_cast<std::int32_t>(c & 31),
                                            low.y + static_cast<std::int32_t>(c >> 5), low.z + z});
                 std::uint32_t const bit = std::uint32_t{1} << z;
-                if (s != voxel_state::air) fresh->solid[c] |= bit;
-                if (s == voxel_state::colluvium) fresh->colluvium[c] |= bit;
+                if (s != voxel_state::air) fresh.solid[c] |= bit;
+                if (s == voxel_state::colluvium) fresh.colluvium[c] |= bit;
             }
         }
-        make_mixed(b) = *fresh;
-        compact(b);
+        assign_brick(b, fresh);
     }
 
     /// Voxels in a plane. O(bricks).
@@ -290,8 +297,13 @@ public:
                (pool_.size() - free_.size()) * sizeof(brick);
     }
 
-    sparse_grid(sparse_grid&&) = default;
-    sparse_grid& operator=(sparse_grid&&) = default;
+    /// What is moved from has no voxels.
+    sparse_grid(sparse_grid&& other) noexcept : sparse_grid() { swap(other); }
+    sparse_grid& operator=(sparse_grid&& other) noexcept {
+        sparse_grid taken(std::move(other));
+        swap(taken);
+        return *this;
+    }
     sparse_grid(sparse_grid const& other)
         : user_(other.user_), rotation_(other.rotation_), border_(other.border_), size_(other.size_),
           bricks_(other.bricks_), table_(other.table_), free_(other.free_) {
@@ -308,6 +320,27 @@ private:
     static constexpr std::uint32_t all_air = 0;
     static constexpr std::uint32_t all_rock = 1;
     static constexpr std::uint32_t first_stored = 2;
+
+    /// The slot of a brick that needs no bits, else `first_stored`.
+    [[nodiscard]] std::uint32_t uniform(voxel low, brick const& bits) const noexcept {
+        bool air = true;
+        bool rock = true;
+        for (std::size_t c = 0; c < 1024 && (air || rock); ++c) {
+            air = air && bits.solid[c] == 0;
+            rock = rock && bits.solid[c] == inside_word(low, c) && bits.colluvium[c] == 0;
+        }
+        return air ? all_air : rock ? all_rock : first_stored;
+    }
+    void swap(sparse_grid& other) noexcept {
+        std::swap(user_, other.user_);
+        std::swap(rotation_, other.rotation_);
+        std::swap(border_, other.border_);
+        std::swap(size_, other.size_);
+        std::swap(bricks_, other.bricks_);
+        table_.swap(other.table_);
+        pool_.swap(other.pool_);
+        free_.swap(other.free_);
+    }
 
     grid_frame user_{};
     up_rotation rotation_{};
