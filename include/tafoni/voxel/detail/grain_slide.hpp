@@ -1,0 +1,171 @@
+/// \file
+/// The way of one grain over a grid that stands still.
+#ifndef TAFONI_VOXEL_DETAIL_GRAIN_SLIDE_HPP
+#define TAFONI_VOXEL_DETAIL_GRAIN_SLIDE_HPP
+
+#include <tafoni/core/elementary.hpp>
+#include <tafoni/voxel/repose_rule.hpp>
+#include <tafoni/voxel/sparse_grid.hpp>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace tafoni::detail {
+
+/// A voxel of a grid as one number; ordered like voxels.
+[[nodiscard]] constexpr std::uint64_t voxel_key(voxel v) noexcept {
+    return static_cast<std::uint64_t>(v.z) << 40 | static_cast<std::uint64_t>(v.y) << 20 |
+           static_cast<std::uint64_t>(v.x);
+}
+[[nodiscard]] constexpr voxel voxel_of_key(std::uint64_t k) noexcept {
+    constexpr std::uint64_t mask = (std::uint64_t{1} << 20) - 1;
+    return {static_cast<std::int32_t>(k & mask), static_cast<std::int32_t>(k >> 20 & mask),
+            static_cast<std::int32_t>(k >> 40)};
+}
+
+/// A bijection that scatters 64 bits [Stafford 2011, mix 13].
+[[nodiscard]] constexpr std::uint64_t scatter(std::uint64_t h) noexcept {
+    h = (h ^ h >> 30) * 0xBF58476D1CE4E5B9ULL;
+    h = (h ^ h >> 27) * 0x94D049BB133111EBULL;
+    return h ^ h >> 31;
+}
+
+/// Answers where a grain goes next, from the solid voxels alone. Holds no state of the grid.
+class grain_slide {
+public:
+    enum class step : std::uint8_t { rests, moves, leaves };
+
+    grain_slide(sparse_grid const& grid, repose_rule const& rule, std::uint64_t seed, std::uint64_t number)
+        : grid_(&grid), baseline_(rule.baseline), key_(scatter(scatter(seed + 0x9E3779B97F4A7C15ULL) ^ number)) {
+        nx_ = static_cast<std::int32_t>(grid.size()[0]);
+        ny_ = static_cast<std::int32_t>(grid.size()[1]);
+        sides_ = grid.border().sides;
+        vec3 const h = grid.spacing();
+        pitch_ = {h[0], h[1]};
+        double const radians = rule.angle * 0x1.1df46a2529d39p-6;
+        double const slope = elementary::sin(radians) / elementary::cos(radians);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            for (int k = 1; k <= baseline_; ++k) {
+                double const drop = k * pitch_[axis] * slope / h[2];
+                // Roundings of the tangent must not take a voxel from 45 degrees, nor give one.
+                double const n = k == baseline_ ? std::floor(drop * (1 + 1e-12)) : std::ceil(drop * (1 - 1e-12));
+                limit_[axis][static_cast<std::size_t>(k)] =
+                    rule.angle >= 90 ? sparse_grid::bottomless : n < 1 ? 1 : n < 1e9 ? static_cast<std::int32_t>(n) : 1000000000;
+            }
+        }
+    }
+
+    [[nodiscard]] int baseline() const noexcept { return baseline_; }
+    [[nodiscard]] std::uint64_t grain_key(voxel start) const noexcept { return key_ ^ voxel_key(start); }
+
+    /// Voxels of air from z downwards in a column of the grid or beyond its sides, z inside the grid. A side of
+    /// rock or of more of the same is a wall; below an airy side the ground goes on where the bottom is rock.
+    [[nodiscard]] std::int32_t depth(std::int32_t x, std::int32_t y, std::int32_t z) const noexcept {
+        if (static_cast<std::uint32_t>(x) >= static_cast<std::uint32_t>(nx_) ||
+            static_cast<std::uint32_t>(y) >= static_cast<std::uint32_t>(ny_)) {
+            border_kind const beyond = x < 0 ? sides_[0] : x >= nx_ ? sides_[1] : y < 0 ? sides_[2] : sides_[3];
+            if (beyond != border_kind::air) return 0;
+            return sides_[4] == border_kind::rock ? z + 1 : sparse_grid::bottomless;
+        }
+        sparse_grid const& g = *grid_;
+        std::size_t const column = sparse_grid::column_of({x, y, z});
+        std::int32_t const start = z;
+        while (z >= 0) {
+            std::int32_t const in_word = z & 31;
+            std::uint32_t const word = g.solid_word(g.brick_of({x, y, z}), column) << (31 - in_word);
+            if (word != 0) return start - z + std::countl_zero(word);
+            z -= in_word + 1;
+        }
+        return open_bottom() ? sparse_grid::bottomless : start + 1;
+    }
+
+    /// Lets the grain fall to what carries it; it stays where it stands on something.
+    [[nodiscard]] step fall(voxel& p) const noexcept {
+        if (p.z == 0) return open_bottom() ? step::leaves : step::rests;
+        std::int32_t const n = depth(p.x, p.y, p.z - 1);
+        if (n == 0) return step::rests;
+        if (n == sparse_grid::bottomless) return step::leaves;
+        p.z -= n;
+        return step::moves;
+    }
+
+    /// From a place where it stands: to the steepest side, to the first column there that is deeper, and down in
+    /// it; rests where no side is too steep. Every move lowers the grain by a voxel at least, for it ends in a
+    /// column with a drop of 2 or more: so the way of a grain is shorter than the grid is high. O(4 L) columns.
+    [[nodiscard]] step slide(voxel& p, std::uint64_t grain) const noexcept {
+        std::array<voxel, 4> to{};
+        std::array<bool, 4> gone{};
+        double steepest = 0;
+        std::uint32_t ties = 0;
+        for (std::size_t d = 0; d < 4; ++d) {
+            side const s = look(p, d);
+            if (s.slope == 0 || s.slope < steepest) continue;
+            if (s.slope > steepest) {
+                steepest = s.slope;
+                ties = 0;
+            }
+            to[ties] = s.to;
+            gone[ties] = s.leaves;
+            ++ties;
+        }
+        if (ties == 0) return step::rests;
+        std::size_t chosen = 0;
+        if (ties > 1) {
+            std::uint64_t const h = scatter(grain ^ scatter(voxel_key(p) + 0x9E3779B97F4A7C15ULL));
+            chosen = static_cast<std::size_t>((h >> 32) * ties >> 32);
+        }
+        p = to[chosen];
+        return gone[chosen] ? step::leaves : step::moves;
+    }
+
+private:
+    struct side {
+        double slope = 0;  ///< 1 / length of dz; 0 where not too steep
+        voxel to{};
+        bool leaves = false;
+    };
+
+    [[nodiscard]] side look(voxel p, std::size_t d) const noexcept {
+        side out;
+        std::int32_t const sign = (d & 1U) != 0 ? 1 : -1;
+        std::size_t const axis = d / 2;
+        bool found = false;
+        for (std::int32_t k = 1; k <= baseline_; ++k) {
+            std::int32_t const x = axis == 0 ? p.x + sign * k : p.x;
+            std::int32_t const y = axis == 1 ? p.y + sign * k : p.y;
+            std::int32_t const n = depth(x, y, p.z);
+            if (n == 0) break;
+            if (n >= 2 && !found) {
+                found = true;
+                bool const inside = x >= 0 && x < nx_ && y >= 0 && y < ny_;
+                out.leaves = !inside || n == sparse_grid::bottomless;
+                if (!out.leaves) out.to = {x, y, p.z - (n - 1)};
+            }
+            if (n > limit_[axis][static_cast<std::size_t>(k)]) {
+                double const slope = n == sparse_grid::bottomless
+                                         ? std::numeric_limits<double>::infinity()
+                                         : static_cast<double>(n) / (k * pitch_[axis]);
+                if (slope > out.slope) out.slope = slope;
+            }
+        }
+        return out;
+    }
+    [[nodiscard]] bool open_bottom() const noexcept { return sides_[4] == border_kind::air; }
+
+    sparse_grid const* grid_;
+    int baseline_;
+    std::uint64_t key_;
+    std::int32_t nx_ = 0;
+    std::int32_t ny_ = 0;
+    std::array<border_kind, 6> sides_{};
+    std::array<double, 2> pitch_{};
+    std::array<std::array<std::int32_t, repose_rule::longest_baseline + 1>, 2> limit_{};
+};
+
+}  // namespace tafoni::detail
+
+#endif
