@@ -264,6 +264,15 @@ public:
         }
         table_[b] = as;
     }
+    /// Makes a brick nothing but rock or nothing but air. O(1).
+    void fill_uniform(std::size_t b, bool rock) {
+        std::uint32_t const slot = table_[b];
+        if (slot >= first_stored) {
+            free_.push_back(slot - first_stored);
+            pool_[slot - first_stored].reset();
+        }
+        table_[b] = rock ? all_rock : all_air;
+    }
     /// Sets every voxel of a brick to state(voxel), asked along z first. O(32^3).
     template <class State>
     void fill_brick(std::size_t b, State const& state) {
