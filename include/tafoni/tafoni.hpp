@@ -15,6 +15,7 @@
 #include <tafoni/core/sum.hpp>
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/core/vector.hpp>
+#include <tafoni/curvature/bubble_ratio.hpp>
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/cotangent.hpp>
 #include <tafoni/curvature/estimate_curvature.hpp>
@@ -132,6 +133,9 @@
 #include <tafoni/version.hpp>
 #include <tafoni/voxel/bit_grid.hpp>
 #include <tafoni/voxel/bubble.hpp>
+#include <tafoni/voxel/bubble_choice.hpp>
+#include <tafoni/voxel/bubble_mixture.hpp>
+#include <tafoni/voxel/bubble_profile.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
 #include <tafoni/voxel/bubble_stencil.hpp>
 #include <tafoni/voxel/colluvium.hpp>
@@ -152,6 +156,7 @@
 #include <tafoni/voxel/repose_rule.hpp>
 #include <tafoni/voxel/rockfall.hpp>
 #include <tafoni/voxel/rockfall_options.hpp>
+#include <tafoni/voxel/single_bubble.hpp>
 #include <tafoni/voxel/span_grid.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
 #include <tafoni/voxel/sphere_bubble.hpp>
@@ -165,6 +170,7 @@
 #include <tafoni/weathering/frost_wedging.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 #include <tafoni/weathering/voxel_report.hpp>
+#include <tafoni/weathering/voxel_run.hpp>
 #include <tafoni/weathering/voxel_weathering.hpp>
 #include <tafoni/weathering/weathered_surface.hpp>
 

@@ -1,0 +1,204 @@
+/// \file
+/// Counts of air in the bubbles of a brick: from scratch, or brought up to date by what has changed.
+#ifndef TAFONI_VOXEL_DETAIL_AIR_COUNTER_HPP
+#define TAFONI_VOXEL_DETAIL_AIR_COUNTER_HPP
+
+#include <tafoni/voxel/bubble_stencil.hpp>
+#include <tafoni/voxel/detail/air_rows.hpp>
+#include <tafoni/voxel/detail/count_air.hpp>
+#include <tafoni/voxel/detail/skin_view.hpp>
+#include <tafoni/voxel/sparse_grid.hpp>
+#include <tafoni/voxel/voxel_change.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// Scratch of one thread. A brick gathers from what lies around it and writes to its own records only, so bricks may
+/// be worked on by different threads (a counter each) while nobody changes the grid.
+///
+/// `recount` and `notify` lead to the same integers; `update` takes the cheaper.
+class air_counter {
+public:
+    /// Whether a change can matter to the bubbles of a brick that reach so far. O(1).
+    [[nodiscard]] static bool concerns(voxel_change const& c, voxel brick_corner, int reach) noexcept {
+        auto const close = [reach](std::int32_t at, std::int32_t low) { return at >= low - reach && at < low + 32 + reach; };
+        return (c.before == voxel_state::air) != (c.after == voxel_state::air) && close(c.at.x, brick_corner.x) &&
+               close(c.at.y, brick_corner.y) && close(c.at.z, brick_corner.z);
+    }
+
+    /// The farthest reach among bubbles. O(bubbles).
+    [[nodiscard]] static int reach_of(std::span<bubble_stencil const> bubbles) noexcept {
+        int reach = 0;
+        for (bubble_stencil const& b : bubbles) reach = std::max(reach, b.reach());
+        return reach;
+    }
+
+    /// Writes `skin.air` for every record from the grid as it is. Also for a part of a brick's records, such as those
+    /// that are new. O((32 + 2 reach)^2 + records * rows of a bubble).
+    void recount(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> bubbles,
+                 skin_view const& skin) {
+        if (skin.position.empty()) return;
+        if (skin.bubble.empty() || bubbles.size() == 1) {
+            prepare(grid, brick, bubbles[0]);
+            return count(bubbles[0], skin.position, skin.air.data());
+        }
+        group(bubbles.size(), skin);
+        prepared_ = none;
+        for (std::size_t b = 0; b < bubbles.size(); ++b) {
+            std::size_t const first = first_[b];
+            std::size_t const n = first_[b + 1] - first;
+            if (n == 0) continue;
+            prepare_for_all(grid, brick, bubbles, b);
+            count(bubbles[b], std::span(grouped_).subspan(first, n), counts_.data() + first);
+        }
+        for (std::size_t k = 0; k < skin.position.size(); ++k) skin.air[order_[k]] = counts_[k];
+    }
+
+    /// Adds to `skin.air` what `changes` (those that do not concern the brick are skipped) have done to the bubbles.
+    /// O(records + changes * (rows of the bubbles + records met)).
+    void notify(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> bubbles,
+                skin_view const& skin, std::span<voxel_change const> changes) {
+        if (skin.position.empty() || changes.empty()) return;
+        voxel const brick_corner = grid.brick_corner(brick);
+        slot_.resize(32768);
+        bool const one = skin.bubble.empty() || bubbles.size() == 1;
+        for (std::size_t b = 0; b < (one ? 1 : bubbles.size()); ++b) {
+            columns_.fill(0);
+            bool any = false;
+            for (std::size_t i = 0; i < skin.position.size(); ++i) {
+                if (!one && skin.bubble[i] != b) continue;
+                brick_position const p = skin.position[i];
+                columns_[p >> 5] |= std::uint32_t{1} << (p & 31);
+                slot_[p] = static_cast<std::uint16_t>(i);
+                any = true;
+            }
+            if (!any) continue;
+            for (voxel_change const& c : changes) {
+                if (!concerns(c, brick_corner, bubbles[b].reach())) continue;
+                std::uint32_t const delta = c.after == voxel_state::air ? 1U : ~0U;
+                for_each_image(grid, c.at, bubbles[b].reach(), [&](voxel at) {
+                    tell(at - brick_corner, delta, bubbles[b], skin);
+                });
+            }
+        }
+    }
+
+    /// `notify` for few changes, `recount` for many; the grid has changed already. `changes` must hold every change
+    /// that concerns the brick since the records' counts were right.
+    void update(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> bubbles,
+                skin_view const& skin, std::span<voxel_change const> changes) {
+        if (recount_is_cheaper(skin.position.size(), changes.size())) {
+            recount(grid, brick, bubbles, skin);
+        } else {
+            notify(grid, brick, bubbles, skin, changes);
+        }
+    }
+
+    [[nodiscard]] static bool recount_is_cheaper(std::size_t records, std::size_t changes) noexcept {
+        return changes * 32 > records + 64;
+    }
+
+private:
+    static constexpr int none = -1;
+
+    void prepare(sparse_grid const& grid, std::size_t brick, bubble_stencil const& b) {
+        rows_.gather(grid, brick, b.reach(), b.words().kind());
+    }
+    /// Bubbles of one layout share what is gathered.
+    void prepare_for_all(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> bubbles,
+                         std::size_t b) {
+        auto const kind = bubbles[b].words().kind();
+        if (prepared_ == static_cast<int>(kind)) return;
+        int reach = 0;
+        for (bubble_stencil const& other : bubbles) {
+            if (other.words().kind() == kind) reach = std::max(reach, other.reach());
+        }
+        rows_.gather(grid, brick, reach, kind);
+        prepared_ = static_cast<int>(kind);
+    }
+
+    void count(bubble_stencil const& b, std::span<brick_position const> position, std::uint32_t* air) const {
+        count_solid({rows_, b.words(), position, air});
+        for (std::size_t i = 0; i < position.size(); ++i) air[i] = b.size() - air[i];
+    }
+
+    /// Counting sort of the records by bubble.
+    void group(std::size_t bubbles, skin_view const& skin) {
+        std::size_t const n = skin.position.size();
+        first_.assign(bubbles + 1, 0);
+        for (std::size_t i = 0; i < n; ++i) ++first_[skin.bubble[i] + std::size_t{1}];
+        for (std::size_t b = 0; b < bubbles; ++b) first_[b + 1] += first_[b];
+        order_.resize(n);
+        grouped_.resize(n);
+        counts_.resize(n);
+        std::vector<std::uint32_t>& next = next_;
+        next.assign(first_.begin(), first_.end());
+        for (std::size_t i = 0; i < n; ++i) {
+            std::size_t const at = next[skin.bubble[i]]++;
+            order_[at] = static_cast<std::uint32_t>(i);
+            grouped_[at] = skin.position[i];
+        }
+    }
+
+    /// The voxel, and those beyond the grid that show what it holds where the border extends it.
+    template <class F>
+    static void for_each_image(sparse_grid const& grid, voxel v, int reach, F const& f) {
+        voxel low = v;
+        voxel high = v;
+        auto const& sides = grid.border().sides;
+        auto const widen = [&](std::size_t axis, std::int32_t at, std::int32_t& lo, std::int32_t& hi) {
+            if (at == 0 && sides[2 * axis] == border_kind::extend) lo -= reach;
+            if (static_cast<std::size_t>(at) + 1 == grid.size()[axis] && sides[2 * axis + 1] == border_kind::extend) {
+                hi += reach;
+            }
+        };
+        widen(0, v.x, low.x, high.x);
+        widen(1, v.y, low.y, high.y);
+        widen(2, v.z, low.z, high.z);
+        for (std::int32_t z = low.z; z <= high.z; ++z) {
+            for (std::int32_t y = low.y; y <= high.y; ++y) {
+                for (std::int32_t x = low.x; x <= high.x; ++x) f(voxel{x, y, z});
+            }
+        }
+    }
+
+    /// One change: the records whose bubble holds it lie in the mirrored bubble around it. Relative to the brick.
+    void tell(voxel at, std::uint32_t delta, bubble_stencil const& bubble, skin_view const& skin) const {
+        for (bubble_stencil::row const& row : bubble.rows()) {
+            int const x = at.x - row.dx;
+            int const y = at.y - row.dy;
+            if (((x | y) & ~31) != 0) continue;
+            std::uint32_t const present = columns_[static_cast<std::size_t>(x + 32 * y)];
+            if (present == 0) continue;
+            for (std::uint32_t left = present; left != 0; left &= left - 1) {
+                int const z = std::countr_zero(left);
+                int const dz = at.z - z;
+                if (dz < -bubble_stencil::widest || dz > bubble_stencil::widest) continue;
+                auto const k = static_cast<unsigned>(dz + bubble_stencil::widest);
+                if ((row.bits[k / 64] >> (k % 64) & 1) == 0) continue;
+                skin.air[slot_[static_cast<std::size_t>(z + 32 * (x + 32 * y))]] += delta;
+            }
+        }
+    }
+
+    air_rows rows_{};
+    int prepared_ = none;
+    std::vector<std::size_t> first_{};
+    std::vector<std::uint32_t> next_{};
+    std::vector<std::uint32_t> order_{};
+    std::vector<brick_position> grouped_{};
+    std::vector<std::uint32_t> counts_{};
+    std::vector<std::uint16_t> slot_{};
+    std::array<std::uint32_t, 1024> columns_{};
+};
+
+}  // namespace tafoni::detail
+
+#endif
