@@ -6,6 +6,7 @@
 #include <tafoni/core/error.hpp>
 #include <tafoni/decomposition/concepts.hpp>
 #include <tafoni/decomposition/detail/ranked_bits.hpp>
+#include <tafoni/voxel/concepts.hpp>
 
 #include <array>
 #include <cmath>
@@ -118,6 +119,18 @@ public:
         return from_indices(options, [&](std::size_t i, std::size_t j, std::size_t k) {
             return rock[i + options.size[0] * (j + options.size[1] * k)] != 0;
         });
+    }
+
+    /// Rock where any grid of voxels has rock; colluvium is as open to water as air. `erase_fallen` leads back.
+    /// O(voxels). \throws invalid_input  as `voxel_cells_options::validate`.
+    template <voxel_grid G>
+    static voxel_cells from_grid(G const& grid, std::array<bool, 6> const& artificial = {}) {
+        using access = grid_access<G>;
+        return from_indices({.size = access::size(grid), .spacing = access::spacing(grid),
+                             .origin = access::origin(grid), .artificial = artificial},
+                            [&](std::size_t i, std::size_t j, std::size_t k) {
+                                return access::state(grid, i, j, k) == voxel_state::rock;
+                            });
     }
 
     [[nodiscard]] static vec3 centre(voxel_cells_options const& o, std::size_t i, std::size_t j, std::size_t k) noexcept {

@@ -10,6 +10,7 @@
 #include <tafoni/percolation/concepts.hpp>
 #include <tafoni/rules/concepts.hpp>
 #include <tafoni/testing/structure_archetypes.hpp>
+#include <tafoni/testing/voxel_archetypes.hpp>
 
 #include <vector>
 

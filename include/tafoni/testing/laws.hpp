@@ -6,5 +6,6 @@
 #include <tafoni/testing/mesh_laws.hpp>
 #include <tafoni/testing/policy_laws.hpp>
 #include <tafoni/testing/structure_laws.hpp>
+#include <tafoni/testing/voxel_laws.hpp>
 
 #endif
