@@ -14,7 +14,7 @@ namespace tafoni {
 
 /// Bubbles, and which of them stands at a point [Jones et al., sections 4.2 and 5].
 ///
-/// `stencils()`: all bubbles, 1 .. 256. `choose(p)`: an index into them; p in the user's space and length unit.
+/// `stencils()`: all bubbles, 1 .. 65536. `choose(p)`: an index into them; p in the user's space and length unit.
 /// Laws: pure; `choose` is below the number of bubbles at every finite point.
 /// Model: `struct mine { std::vector<bubble_stencil> b{sphere_bubble{3}, sphere_bubble{7}};
 ///                       std::span<bubble_stencil const> stencils() const { return b; }

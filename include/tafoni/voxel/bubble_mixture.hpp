@@ -20,7 +20,7 @@ namespace tafoni {
 /// `bubble_mixture{.bubbles = {sphere_bubble{3}, disc_bubble{.radius = 5}}, .field = gradient_noise{.frequency = 0.1}}`
 template <scalar_field Field = gradient_noise>
 struct bubble_mixture {
-    std::vector<bubble_stencil> bubbles{};  ///< 1 .. 256
+    std::vector<bubble_stencil> bubbles{};  ///< 1 .. 65536
     Field field{};                          ///< of the user's space
     double lowest = -1;                     ///< of the field
     double highest = 1;                     ///< of the field, > `lowest`
@@ -30,7 +30,7 @@ struct bubble_mixture {
         return bubbles.size() < 2 ? 0 : detail::equal_interval(field(p), lowest, highest, bubbles.size());
     }
 
-    /// \throws invalid_input  `empty_input` for no bubble, `size_overflow` for more than 256, `bad_parameter` for a
+    /// \throws invalid_input  `empty_input` for no bubble, `size_overflow` for more than 65536, `bad_parameter` for a
     ///         range that is empty or not finite; what the field's `validate` throws.
     void validate() const {
         detail::require_bubbles("bubble_mixture.bubbles", bubbles.size());

@@ -31,7 +31,7 @@ struct bubble_layer {
 /// `bubble_profile{.bubbles = {sphere_bubble{4}, disc_bubble{3}}, .layers = {{.top = 10, .mix = {1}}, {.mix = {0, 1}}}}`
 template <scalar_field Field = gradient_noise>
 struct bubble_profile {
-    std::vector<bubble_stencil> bubbles{};  ///< 1 .. 256
+    std::vector<bubble_stencil> bubbles{};  ///< 1 .. 65536
     std::vector<bubble_layer> layers{{}};   ///< from below, `top` ascending
     vec3 up{0, 0, 1};                       ///< in the user's space, unit length
     Field field{};                          ///< of the user's space
@@ -49,7 +49,7 @@ struct bubble_profile {
         return mix.size() < 2 ? mix[0] : mix[detail::equal_interval(field(p), lowest, highest, mix.size())];
     }
 
-    /// \throws invalid_input  `empty_input` for no bubble, no layer or an empty mix; `size_overflow` for more than 256
+    /// \throws invalid_input  `empty_input` for no bubble, no layer or an empty mix; `size_overflow` for more than 65536
     ///         bubbles; `index_out_of_range` for a mix that names a bubble there is not; `bad_parameter` for tops that do
     ///         not ascend, `up` that is not of unit length, an empty range; what the field's `validate` throws.
     void validate() const {

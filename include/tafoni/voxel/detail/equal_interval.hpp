@@ -24,9 +24,9 @@ inline void require_bubbles(char const* name, std::size_t n) {
         fail<invalid_input>(errc::empty_input, std::string(name) + ": got none, need at least 1",
                             {.kind = entity::parameter, .value = 0, .limit = 1});
     }
-    if (n > 256) {
-        fail<invalid_input>(errc::size_overflow, std::string(name) + ": got " + std::to_string(n) + ", at most 256",
-                            {.kind = entity::parameter, .value = static_cast<double>(n), .limit = 256});
+    if (n > 65536) {
+        fail<invalid_input>(errc::size_overflow, std::string(name) + ": got " + std::to_string(n) + ", at most 65536",
+                            {.kind = entity::parameter, .value = static_cast<double>(n), .limit = 65536});
     }
 }
 
