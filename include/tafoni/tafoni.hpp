@@ -162,6 +162,7 @@
 #include <tafoni/voxel/sphere_bubble.hpp>
 #include <tafoni/voxel/voxel.hpp>
 #include <tafoni/voxel/voxel_change.hpp>
+#include <tafoni/voxel/voxel_surface.hpp>
 #include <tafoni/weathering/erase_fallen.hpp>
 #include <tafoni/weathering/frost_checkpoint.hpp>
 #include <tafoni/weathering/frost_presets.hpp>

@@ -1,0 +1,209 @@
+/// \file
+/// Voxel weathering over a grid: the state that weathers, and the loop over the steps.
+#ifndef TAFONI_WEATHERING_VOXEL_RUN_HPP
+#define TAFONI_WEATHERING_VOXEL_RUN_HPP
+
+#include <tafoni/core/executor.hpp>
+#include <tafoni/weathering/detail/voxel_core.hpp>
+#include <tafoni/weathering/voxel_options.hpp>
+#include <tafoni/weathering/voxel_report.hpp>
+#include <tafoni/weathering/voxel_weathering.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tafoni {
+
+/// A voxel of the skin, as a run sees it.
+struct skin_voxel {
+    voxel at{};  ///< turned axes
+    voxel_state state = voxel_state::rock;
+    double decimation = 100;  ///< what is left of the voxel, per cent; <= 100, falls at 0
+    double durability = 0;    ///< at its centre, >= `voxel_weathering::least_durability`
+    double air_share = 0;     ///< of its bubble, in [0, 1]
+    std::size_t bubble = 0;   ///< which stencil of the bubble choice
+};
+
+/// Directable weathering of a grid [Jones et al., section 4]. Owns its grid, in bricks (`sparse_grid`).
+///
+/// A step: every voxel of the skin loses (A f(c) + B f(c')) / durability; all that are used up fall at once;
+/// rock that lost its hold falls; grains settle; then counts and skin are brought up to date, so that every
+/// rate is that of the grid as it is, to the bit. New skin and every grain that came to rest start at 100.
+/// What a grain covers keeps its decimation and goes on when it is bare again.
+/// The state depends on the grid, the policies and the options only, never on threads; n steps and then m are n + m.
+///
+/// When anything throws (a policy, an observer, the allocator), the state is that after the last complete
+/// step and the run can go on.
+template <class Process = voxel_weathering<>>
+class voxel_run {
+public:
+    /// Copies the grid. O(voxels), once. \throws invalid_input  for a grid, policies or options out of range.
+    template <voxel_grid Grid, executor Executor = inline_executor>
+        requires(!std::same_as<Grid, sparse_grid>)
+    explicit voxel_run(Grid const& grid, Process process = {}, voxel_options const& options = {},
+                       Executor const& threads = {})
+        : voxel_run(sparse_grid::copy_of(grid, options.up, options.border), std::move(process), options, threads) {}
+    /// Takes the grid over, with its own up and border. O(bricks + skin voxels in bubbles).
+    template <executor Executor = inline_executor>
+    explicit voxel_run(sparse_grid grid, Process process = {}, voxel_options const& options = {},
+                       Executor const& threads = {})
+        : core_(std::move(grid), checked(std::move(process)), checked(options), threads) {}
+
+    /// Adds the steps of the schedule.
+    ///
+    /// Progress is reported under the stage "weather"; an observer that answers `stop`, there or at a
+    /// snapshot, ends the run after the step just completed.
+    /// Cost per step O(R^2 x changed x skin near them + skin) for bubbles of radius R.
+    /// \throws invalid_input  for a schedule out of range, or when a policy answers out of its range.
+    template <executor Executor = inline_executor>
+    voxel_report run(voxel_schedule const& schedule, run_context const& context = {}, Executor const& threads = {}) {
+        schedule.validate();
+        auto const start = std::chrono::steady_clock::now();
+        stopped_ = voxel_stop::finished;
+        std::uint64_t const all = schedule.steps();
+        std::uint64_t done = 0;
+        bool going = !context.on_progress || context.on_progress({"weather", 0}) == step_control::proceed;
+        if (!going) stopped_ = voxel_stop::observer;
+        if (going && all == 0 && context.on_progress) (void)context.on_progress({"weather", 1});
+        for (voxel_phase const& phase : schedule.phases) {
+            core_.rates.set(phase.spheroidal, phase.cavernous);
+            for (std::uint64_t k = 0; going && k < phase.steps; ++k) {
+                core_.step(threads);
+                ++done;
+                if (schedule.snapshot_every > 0 && schedule.on_snapshot &&
+                    core_.count.steps % schedule.snapshot_every == 0 &&
+                    schedule.on_snapshot(core_.count.steps) == step_control::stop) {
+                    stopped_ = voxel_stop::observer;
+                    going = false;
+                }
+                if (!context.on_progress) continue;
+                double const fraction =
+                    going && done < all ? static_cast<double>(done) / static_cast<double>(all) : 1.0;
+                if (context.on_progress({"weather", fraction}) == step_control::stop && done < all && going) {
+                    stopped_ = voxel_stop::observer;
+                    going = false;
+                }
+            }
+        }
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return report();
+    }
+
+    /// Totals since the start. O(1).
+    [[nodiscard]] voxel_report report() const noexcept {
+        voxel_report r = core_.count;
+        r.seconds = core_.taken;
+        r.seconds.run = seconds_;
+        r.stopped = stopped_;
+        return r;
+    }
+
+    [[nodiscard]] sparse_grid const& grid() const noexcept { return core_.grid; }
+    [[nodiscard]] Process const& process() const noexcept { return core_.process; }
+    [[nodiscard]] voxel_options const& options() const noexcept { return core_.options; }
+    [[nodiscard]] std::uint64_t steps() const noexcept { return core_.count.steps; }
+    /// What fell, in order.
+    [[nodiscard]] std::span<fallen_block const> blocks() const noexcept { return core_.blocks; }
+
+    /// A voxel of the skin (turned axes), or nothing. O(log of the brick's skin).
+    [[nodiscard]] std::optional<skin_voxel> at(voxel v) const noexcept {
+        if (!core_.grid.contains(v)) return std::nullopt;
+        detail::voxel_skin const* const skin = core_.skin_of(core_.grid.brick_of(v));
+        if (skin == nullptr) return std::nullopt;
+        std::size_t const i = skin->find(detail::place_in_brick(v));
+        if (i == skin->size()) return std::nullopt;
+        return view(*skin, i, v);
+    }
+    /// Every voxel of the skin, in voxel order. O(n log n).
+    [[nodiscard]] std::vector<skin_voxel> skin() const {
+        std::vector<skin_voxel> out;
+        out.reserve(core_.count.surface_voxels);
+        for (std::size_t s = 0; s < core_.skins.size(); ++s) {
+            voxel const corner = core_.grid.brick_corner(core_.bricks[s]);
+            for (std::size_t i = 0; i < core_.skins[s].size(); ++i) {
+                out.push_back(view(core_.skins[s], i, detail::voxel_at_place(corner, core_.skins[s].place[i])));
+            }
+        }
+        std::sort(out.begin(), out.end(), [](skin_voxel const& a, skin_voxel const& b) { return a.at < b.at; });
+        return out;
+    }
+    /// What the voxel would lose in a step of one process alone at strength 1, per cent.
+    [[nodiscard]] double spheroidal_rate(skin_voxel const& v) const noexcept {
+        return core_.rates.spheroidal(v.bubble, air_of(v)) / v.durability;
+    }
+    [[nodiscard]] double cavernous_rate(skin_voxel const& v) const noexcept {
+        return core_.rates.cavernous(v.bubble, air_of(v)) / v.durability;
+    }
+
+    /// Replaces the policies between steps; decimation stays. Strong guarantee. O(bricks + skin voxels in bubbles).
+    void replace(Process process) {
+        Process former = std::exchange(core_.process, checked(std::move(process)));
+        try {
+            core_.read_bubbles();
+            auto rates = core_.rates;
+            rates.read(core_.process, core_.options.measure);
+            core_.rescan(inline_executor{});
+            core_.rates = std::move(rates);
+        } catch (...) {
+            core_.process = std::move(former);
+            core_.read_bubbles();
+            throw;
+        }
+    }
+
+    /// Writes the states into any grid of the same size, in the user's axes. O(voxels).
+    /// \throws invalid_input  `bad_parameter` for another size; nothing is written then.
+    template <editable_voxel_grid Grid>
+    void write_states(Grid& out) const {
+        using access = grid_access<Grid>;
+        auto const size = access::size(out);
+        if (size != core_.grid.user_frame().size) {
+            detail::fail<invalid_input>(errc::bad_parameter,
+                                        "voxel_run::write_states: the grid has another size than the one that weathered");
+        }
+        for (std::size_t k = 0; k < size[2]; ++k) {
+            for (std::size_t j = 0; j < size[1]; ++j) {
+                for (std::size_t i = 0; i < size[0]; ++i) {
+                    access::set(out, i, j, k, grid_access<sparse_grid>::state(core_.grid, i, j, k));
+                }
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] skin_voxel view(detail::voxel_skin const& skin, std::size_t i, voxel v) const noexcept {
+        double const size = core_.process.bubbles.stencils()[skin.bubble[i]].size();
+        return {.at = v,
+                .state = core_.grid.state(v),
+                .decimation = skin.left[core_.now][i],
+                .durability = skin.durability[i],
+                .air_share = skin.air[i] / size,
+                .bubble = skin.bubble[i]};
+    }
+    [[nodiscard]] std::uint32_t air_of(skin_voxel const& v) const noexcept {
+        return static_cast<std::uint32_t>(v.air_share * core_.process.bubbles.stencils()[v.bubble].size() + 0.5);
+    }
+    static Process checked(Process process) {
+        process.validate();
+        return process;
+    }
+    static voxel_options const& checked(voxel_options const& options) {
+        options.validate();
+        return options;
+    }
+
+    detail::voxel_core<Process> core_;
+    double seconds_ = 0;
+    voxel_stop stopped_ = voxel_stop::finished;
+};
+
+}  // namespace tafoni
+
+#endif

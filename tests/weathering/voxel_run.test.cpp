@@ -1,0 +1,169 @@
+#include <tafoni/core/random.hpp>
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/voxel/bubble_shapes.hpp>
+#include <tafoni/weathering/voxel_run.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace tafoni;
+
+namespace {
+
+/// A box of rock with a margin of air, eaten by noise from a hash; some of it colluvium when asked.
+sparse_grid lump(std::array<std::size_t, 3> size, std::uint64_t seed, grid_border border = {}, double loose = 0) {
+    sparse_grid g({.size = size}, up_axis::plus_z, border);
+    stream random(seed, stage::user, 0);
+    for (std::int32_t z = 0; z < static_cast<std::int32_t>(size[2]); ++z) {
+        for (std::int32_t y = 0; y < static_cast<std::int32_t>(size[1]); ++y) {
+            for (std::int32_t x = 0; x < static_cast<std::int32_t>(size[0]); ++x) {
+                double const u = random.uniform01();
+                double const w = random.uniform01();
+                if (u < 0.05) continue;
+                g.set({x, y, z}, w < loose ? voxel_state::colluvium : voxel_state::rock);
+            }
+        }
+    }
+    return g;
+}
+
+constexpr grid_border ground{{border_kind::air, border_kind::air, border_kind::air, border_kind::air,
+                              border_kind::rock, border_kind::air}};
+
+std::vector<voxel_state> states(sparse_grid const& g) {
+    auto const n = g.user_frame().size;
+    std::vector<voxel_state> out;
+    for (std::size_t k = 0; k < n[2]; ++k) {
+        for (std::size_t j = 0; j < n[1]; ++j) {
+            for (std::size_t i = 0; i < n[0]; ++i) out.push_back(grid_access<sparse_grid>::state(g, i, j, k));
+        }
+    }
+    return out;
+}
+
+template <class Run>
+void check_ledger(Run const& run) {
+    auto const r = run.report();
+    REQUIRE(r.voxels_rock == run.grid().count(voxel_plane::rock));
+    REQUIRE(r.voxels_colluvium == run.grid().count(voxel_plane::colluvium));
+    REQUIRE(r.voxels_rock + r.voxels_colluvium + r.voxels_vanished + r.voxels_fallen + r.voxels_left ==
+            r.voxels_initial);
+}
+
+/// Skin, counts and rates found anew, by definition.
+template <class Run>
+void check_recomputed(Run const& run) {
+    sparse_grid const& g = run.grid();
+    auto const skin = run.skin();
+    std::size_t at = 0;
+    constexpr voxel sides[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    auto const near_air = [&](voxel v) {
+        return std::any_of(sides, sides + 6, [&](voxel s) { return !g.is_solid(v + s); });
+    };
+    auto const& n = g.size();
+    for (std::int32_t z = 0; z < static_cast<std::int32_t>(n[2]); ++z) {
+        for (std::int32_t y = 0; y < static_cast<std::int32_t>(n[1]); ++y) {
+            for (std::int32_t x = 0; x < static_cast<std::int32_t>(n[0]); ++x) {
+                voxel const v{x, y, z};
+                bool bare = g.is_solid(v) && near_air(v);
+                if (run.options().skin_depth > 1 && g.is_solid(v)) {
+                    bare = bare || std::any_of(sides, sides + 6, [&](voxel s) {
+                               return g.is_solid(v + s) && near_air(v + s);
+                           });
+                }
+                if (!bare) {
+                    REQUIRE(!run.at(v));
+                    continue;
+                }
+                REQUIRE(at < skin.size());
+                REQUIRE(skin[at].at == v);
+                std::size_t const b = run.process().bubbles.choose(g.centre(v));
+                REQUIRE(skin[at].bubble == b);
+                auto const& stencil = run.process().bubbles.stencils()[b];
+                std::uint32_t air = 0;
+                for (auto const& row : stencil.rows()) {
+                    for (int dz = -stencil.reach(); dz <= stencil.reach(); ++dz) {
+                        if (stencil.contains(row.dx, row.dy, dz) && !g.is_solid(v + voxel{row.dx, row.dy, dz})) ++air;
+                    }
+                }
+                REQUIRE(skin[at].air_share == air / static_cast<double>(stencil.size()));
+                ++at;
+            }
+        }
+    }
+    REQUIRE(at == skin.size());
+    REQUIRE(run.report().surface_voxels == skin.size());
+}
+
+}  // namespace
+
+TEST_CASE("a single voxel is gone after the steps that its durability promises") {
+    sparse_grid g({.size = {1, 1, 1}});
+    g.set({0, 0, 0}, voxel_state::rock);
+    // A sphere of radius 2 holds 27 voxels, 26 of them air: f = 26 / 27.
+    voxel_run run(g, voxel_weathering{.bubbles = single_bubble{sphere_bubble{.radius = 2}}, .rate = linear_rate{},
+                                      .durability = constant_field{.value = 0.1}});
+    double const rate = 26.0 / 27.0 / 0.1;
+    int step = 0;
+    double left = 100;
+    while (left - rate > 0) {
+        left -= rate;
+        ++step;
+        run.run({.phases = {{.steps = 1}}});
+        REQUIRE(run.at({0, 0, 0})->decimation == left);
+    }
+    run.run({.phases = {{.steps = 1}}});
+    REQUIRE(run.report().voxels_rock == 0);
+    REQUIRE(run.report().voxels_vanished == 1);
+    REQUIRE(run.report().surface_voxels == 0);
+    REQUIRE(step == 10);
+}
+
+TEST_CASE("no voxel is lost, and the skin and every count are those of the grid, at every step") {
+    for (int kind = 0; kind < 6; ++kind) {
+        INFO("kind " << kind);
+        voxel_options options{.skin_depth = 1 + kind % 2, .seed = 5};
+        if (kind % 3 > 0) options.colluvium = repose_rule{};
+        if (kind % 3 > 1) options.rockfall = rockfall_options{};
+        voxel_run run(lump({37, 14, 35}, static_cast<std::uint64_t>(kind), ground, kind % 3 > 0 ? 0.1 : 0.0),
+                      voxel_weathering{.bubbles = single_bubble{sphere_bubble{.radius = 2.0 + kind}},
+                                       .durability = constant_field{.value = 0.02}},
+                      options);
+        check_recomputed(run);
+        for (int k = 0; k < 5; ++k) {
+            run.run({.phases = {{.steps = 2, .spheroidal = 1, .cavernous = kind * 0.5}}});
+            check_ledger(run);
+            check_recomputed(run);
+        }
+        REQUIRE(run.report().voxels_rock < run.report().voxels_initial);
+    }
+}
+
+TEST_CASE("steps in one run, in two runs, and on any number of threads give the same state") {
+    voxel_options const options{.colluvium = repose_rule{}, .rockfall = rockfall_options{}, .seed = 3};
+    auto const process = voxel_weathering{.durability = constant_field{.value = 0.015}};
+    auto const rock = lump({40, 40, 36}, 9, ground);
+    voxel_run whole(rock, process, options);
+    whole.run({.phases = {{.steps = 9}}});
+    voxel_run parts(rock, process, options);
+    parts.run({.phases = {{.steps = 4}}});
+    parts.run({});
+    parts.run({.phases = {{.steps = 5}}});
+    REQUIRE(states(whole.grid()) == states(parts.grid()));
+    for (std::size_t const threads : {2u, 3u, 7u}) {
+        thread_pool const pool(threads);
+        voxel_run other(rock, process, options, pool);
+        other.run({.phases = {{.steps = 9}}}, {}, pool);
+        REQUIRE(states(whole.grid()) == states(other.grid()));
+        auto const a = whole.skin();
+        auto const b = other.skin();
+        REQUIRE(a.size() == b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            REQUIRE(a[i].at == b[i].at);
+            REQUIRE(a[i].decimation == b[i].decimation);
+        }
+    }
+}
