@@ -7,6 +7,7 @@
 #include <tafoni/voxel/repose_rule.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -95,34 +96,89 @@ public:
 
     /// From a place where it stands: to the steepest side, to the first column there that is deeper, and down in
     /// it; rests where no side is too steep. Every move lowers the grain by a voxel at least, for it ends in a
-    /// column with a drop of 2 or more: so the way of a grain is shorter than the grid is high. O(4 L) columns.
+    /// column with a drop of 2 or more: so a grain makes fewer moves than the grid is high. O(4 L) columns.
     [[nodiscard]] step slide(voxel& p, std::uint64_t grain) const noexcept {
-        std::array<voxel, 4> to{};
-        std::array<bool, 4> gone{};
+        return baseline_ == 1 ? slide_one(p, grain) : slide_far(p, grain);
+    }
+
+private:
+    static constexpr std::array<std::array<std::int32_t, 2>, 4> sides_xy{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+
+    /// The same draw whenever the same grain stands in the same voxel before the same choice.
+    [[nodiscard]] static std::size_t choose(std::uint64_t grain, voxel p, std::uint32_t ties) noexcept {
+        if (ties == 1) return 0;
+        std::uint64_t const h = scatter(grain ^ scatter(voxel_key(p) + 0x9E3779B97F4A7C15ULL));
+        return static_cast<std::size_t>((h >> 32) * ties >> 32);
+    }
+
+    /// A baseline of one column: nearly always the four columns are in one brick and end in one word.
+    [[nodiscard]] step slide_one(voxel& p, std::uint64_t grain) const noexcept {
+        std::array<std::int32_t, 4> n{};
+        std::int32_t const in_x = p.x & 31;
+        std::int32_t const in_y = p.y & 31;
+        sparse_grid::brick const* const b = grid_->stored(grid_->brick_of(p));
+        if (b != nullptr && in_x > 0 && in_x < 31 && in_y > 0 && in_y < 31 && p.x + 1 < nx_ && p.y + 1 < ny_) {
+            std::uint32_t const* const words = b->solid.data() + sparse_grid::column_of(p);
+            std::int32_t const in_z = p.z & 31;
+            std::array<std::uint32_t, 4> const w{words[-1] << (31 - in_z), words[1] << (31 - in_z),
+                                                 words[-32] << (31 - in_z), words[32] << (31 - in_z)};
+            for (std::size_t d = 0; d < 4; ++d) {
+                n[d] = w[d] != 0 ? std::countl_zero(w[d])
+                                 : depth_below(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
+            }
+        } else {
+            for (std::size_t d = 0; d < 4; ++d) n[d] = depth(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
+        }
+        bool const x_steep = n[0] > limit_[0][1] || n[1] > limit_[0][1];
+        bool const y_steep = n[2] > limit_[1][1] || n[3] > limit_[1][1];
+        if (!x_steep && !y_steep) return step::rests;
+        std::int32_t const x_most = x_steep ? std::max(n[0], n[1]) : 0;
+        std::int32_t const y_most = y_steep ? std::max(n[2], n[3]) : 0;
+        double const x_slope = slope_of(x_most, 1, 0);
+        double const y_slope = slope_of(y_most, 1, 1);
+        std::array<std::uint8_t, 4> tied{};
+        std::uint32_t ties = 0;
+        for (std::uint8_t d = 0; d < 4; ++d) {
+            if (d < 2 ? n[d] == x_most && x_slope >= y_slope : n[d] == y_most && y_slope >= x_slope) tied[ties++] = d;
+        }
+        std::size_t const d = tied[choose(grain, p, ties)];
+        voxel const to{p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z - (n[d] - 1)};
+        if (n[d] == sparse_grid::bottomless || to.x < 0 || to.y < 0 || to.x >= nx_ || to.y >= ny_) return step::leaves;
+        p = to;
+        return step::moves;
+    }
+
+    [[nodiscard]] step slide_far(voxel& p, std::uint64_t grain) const noexcept {
+        std::array<side, 4> best{};
         double steepest = 0;
         std::uint32_t ties = 0;
         for (std::size_t d = 0; d < 4; ++d) {
             side const s = look(p, d);
             if (s.slope == 0 || s.slope < steepest) continue;
-            if (s.slope > steepest) {
-                steepest = s.slope;
-                ties = 0;
-            }
-            to[ties] = s.to;
-            gone[ties] = s.leaves;
-            ++ties;
+            if (s.slope > steepest) ties = 0;
+            steepest = s.slope;
+            best[ties++] = s;
         }
         if (ties == 0) return step::rests;
-        std::size_t chosen = 0;
-        if (ties > 1) {
-            std::uint64_t const h = scatter(grain ^ scatter(voxel_key(p) + 0x9E3779B97F4A7C15ULL));
-            chosen = static_cast<std::size_t>((h >> 32) * ties >> 32);
-        }
-        p = to[chosen];
-        return gone[chosen] ? step::leaves : step::moves;
+        side const& s = best[choose(grain, p, ties)];
+        if (s.leaves) return step::leaves;
+        p = s.to;
+        return step::moves;
     }
 
-private:
+    /// `depth` where the column is inside the grid and its word at z is known to hold no more.
+    [[nodiscard]] std::int32_t depth_below(std::int32_t x, std::int32_t y, std::int32_t z) const noexcept {
+        std::int32_t const next = (z & ~31) - 1;
+        if (next < 0) return open_bottom() ? sparse_grid::bottomless : z + 1;
+        std::int32_t const n = depth(x, y, next);
+        return n == sparse_grid::bottomless ? n : n + (z - next);
+    }
+
+    [[nodiscard]] double slope_of(std::int32_t n, int k, std::size_t axis) const noexcept {
+        return n == sparse_grid::bottomless ? std::numeric_limits<double>::infinity()
+                                            : static_cast<double>(n) / (k * pitch_[axis]);
+    }
+
     struct side {
         double slope = 0;  ///< 1 / length of dz; 0 where not too steep
         voxel to{};
@@ -131,12 +187,11 @@ private:
 
     [[nodiscard]] side look(voxel p, std::size_t d) const noexcept {
         side out;
-        std::int32_t const sign = (d & 1U) != 0 ? 1 : -1;
         std::size_t const axis = d / 2;
         bool found = false;
         for (std::int32_t k = 1; k <= baseline_; ++k) {
-            std::int32_t const x = axis == 0 ? p.x + sign * k : p.x;
-            std::int32_t const y = axis == 1 ? p.y + sign * k : p.y;
+            std::int32_t const x = p.x + k * sides_xy[d][0];
+            std::int32_t const y = p.y + k * sides_xy[d][1];
             std::int32_t const n = depth(x, y, p.z);
             if (n == 0) break;
             if (n >= 2 && !found) {
@@ -146,9 +201,7 @@ private:
                 if (!out.leaves) out.to = {x, y, p.z - (n - 1)};
             }
             if (n > limit_[axis][static_cast<std::size_t>(k)]) {
-                double const slope = n == sparse_grid::bottomless
-                                         ? std::numeric_limits<double>::infinity()
-                                         : static_cast<double>(n) / (k * pitch_[axis]);
+                double const slope = slope_of(n, k, axis);
                 if (slope > out.slope) out.slope = slope;
             }
         }
