@@ -100,15 +100,19 @@
 #include <tafoni/io/read_durability.hpp>
 #include <tafoni/io/read_mesh.hpp>
 #include <tafoni/io/read_obj.hpp>
+#include <tafoni/io/read_pgm.hpp>
 #include <tafoni/io/read_ply.hpp>
 #include <tafoni/io/read_stl.hpp>
+#include <tafoni/io/read_vox.hpp>
 #include <tafoni/io/stl.hpp>
+#include <tafoni/io/vox_file.hpp>
 #include <tafoni/io/vtk_xml.hpp>
 #include <tafoni/io/weathered_channels.hpp>
 #include <tafoni/io/write_obj.hpp>
 #include <tafoni/io/write_ply.hpp>
 #include <tafoni/io/write_pvd.hpp>
 #include <tafoni/io/write_stl.hpp>
+#include <tafoni/io/write_vox.hpp>
 #include <tafoni/io/write_vtp.hpp>
 #include <tafoni/percolation/concepts.hpp>
 #include <tafoni/percolation/cone_rain.hpp>
@@ -148,6 +152,7 @@
 #include <tafoni/voxel/fill_from_predicate.hpp>
 #include <tafoni/voxel/fill_from_solid.hpp>
 #include <tafoni/voxel/frame_for.hpp>
+#include <tafoni/voxel/gray_image.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
 #include <tafoni/voxel/gumdrop_bubble.hpp>
 #include <tafoni/voxel/joints.hpp>

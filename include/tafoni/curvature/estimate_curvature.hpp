@@ -1,0 +1,36 @@
+/// \file
+/// Mean curvature of any mesh of triangles by any estimator.
+#ifndef TAFONI_CURVATURE_ESTIMATE_CURVATURE_HPP
+#define TAFONI_CURVATURE_ESTIMATE_CURVATURE_HPP
+
+#include <tafoni/curvature/concepts.hpp>
+#include <tafoni/curvature/tensor_fit.hpp>
+#include <tafoni/geometry/triangle_surface.hpp>
+
+#include <vector>
+
+namespace tafoni {
+
+namespace detail {
+
+struct estimate_curvature_fn {
+    /// H per vertex, 1 / length unit, positive on ridges. O(vertices + faces) beside the estimator's own cost.
+    /// \throws invalid_input  as `triangle_surface::copy_of`.
+    template <triangle_mesh M, curvature_estimator Estimator = tensor_fit, executor E = inline_executor>
+    [[nodiscard]] std::vector<double> operator()(M const& mesh, Estimator const& estimator = {}, E const& executor = {}) const {
+        triangle_surface const s = triangle_surface::copy_of(mesh);
+        vertex_rings const rings(s.positions.size(), s.triangles);
+        std::vector<double> mean(s.positions.size());
+        estimator(surface_view{.positions = s.positions, .triangles = s.triangles, .rings = &rings}, mean, executor);
+        return mean;
+    }
+};
+
+}  // namespace detail
+
+/// `estimate_curvature(mesh)`, `estimate_curvature(mesh, estimator, executor)`.
+inline constexpr detail::estimate_curvature_fn estimate_curvature{};
+
+}  // namespace tafoni
+
+#endif

@@ -1,0 +1,171 @@
+#include "support/curved_surfaces.hpp"
+#include "support/test_data.hpp"
+
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/curvature/bubble_ratio.hpp>
+#include <tafoni/curvature/cotangent.hpp>
+#include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/curvature/quadric_fit.hpp>
+#include <tafoni/curvature/tensor_fit.hpp>
+#include <tafoni/io/read_mesh.hpp>
+#include <tafoni/testing/curvature_laws.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <bit>
+#include <limits>
+
+using namespace tafoni;
+using namespace tafoni_test;
+
+namespace {
+
+/// log2 of how much the error falls from one mesh to that of twice as many vertices each way.
+template <class Make, class Estimator>
+double order(Make const& make, Estimator const& e, int rings_off = 1) {
+    curved_surface const coarse = make(1);
+    curved_surface const fine = make(2);
+    double const a = error_of(coarse, estimate_curvature(coarse.mesh, e), rings_off).rms;
+    double const b = error_of(fine, estimate_curvature(fine.mesh, e), rings_off).rms;
+    return std::log2(a / b);
+}
+
+struct per_vertex_model {  // the least that the concept asks for
+    void operator()(surface_view const&, std::span<double> mean, executor auto const&) const {
+        std::fill(mean.begin(), mean.end(), 0.0);
+    }
+};
+static_assert(curvature_estimator<per_vertex_model>);
+
+struct forgets_entries {
+    void operator()(surface_view const&, std::span<double>, executor auto const&) const {}
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("every shipped estimator keeps the laws of curvature", "", tensor_fit, cotangent, quadric_fit, bubble_ratio) {
+    CHECK(laws::curvature(TestType{}) == std::vector<std::string>{});
+}
+
+TEST_CASE("the law check finds estimators that break them") {
+    CHECK(laws::curvature(per_vertex_model{}).size() >= 2);  // 0 is no answer on a sphere
+    CHECK(!laws::curvature(forgets_entries{}).empty());
+}
+
+TEST_CASE("the tensor fit is exact on spheres whatever the triangles") {
+    for (int level : {0, 1, 3}) {
+        curved_surface const s = sphere(level);
+        CHECK(error_of(s, estimate_curvature(s.mesh, tensor_fit{})).largest < 1e-12);
+    }
+}
+
+TEST_CASE("estimators converge with order two on regular meshes") {
+    auto const torus = [](std::uint32_t k) { return torus_surface(40 * k, 24 * k, 0); };
+    CHECK(order(torus, tensor_fit{}) > 1.9);
+    CHECK(order(torus, cotangent{}) > 1.9);
+    CHECK(order(torus, quadric_fit{}) > 1.9);
+    auto const barrel = [](std::uint32_t k) { return cylinder(24 * k, 12 * k + 1, 0); };
+    curved_surface const even = barrel(1);  // where the two methods of one ring are exact but for rounding
+    CHECK(error_of(even, estimate_curvature(even.mesh, tensor_fit{}), 2).largest < 0.02);
+    CHECK(error_of(even, estimate_curvature(even.mesh, cotangent{}), 2).largest < 1e-2);
+    CHECK(order(barrel, quadric_fit{}, 2) > 1.9);
+    auto const soap = [](std::uint32_t k) { return catenoid(32 * k, 16 * k + 1, 0); };
+    CHECK(order(soap, tensor_fit{}, 2) > 1.9);
+    CHECK(order(soap, cotangent{}, 2) > 1.9);
+    CHECK(order(soap, quadric_fit{}, 2) > 1.9);
+    auto const ball = [](std::uint32_t k) { return sphere(static_cast<int>(k) + 2); };
+    CHECK(order(ball, cotangent{}) > 1.9);
+    CHECK(order(ball, quadric_fit{}) > 1.9);
+    // A ball of one size on finer and finer meshes.
+    CHECK(order(ball, bubble_ratio{.radius = 0.5}) > 1.7);
+}
+
+TEST_CASE("the bubble ratio approaches 1/R on a sphere from above as its comment says") {
+    curved_surface const s = sphere(4);
+    auto const e = error_of(s, estimate_curvature(s.mesh, bubble_ratio{}));
+    CHECK(e.rms < 0.07);
+    CHECK(error_of(s, estimate_curvature(s.mesh, bubble_ratio{.radius = 0.6})).rms < 0.015);
+}
+
+TEST_CASE("on a torus with jittered vertices the quadric stays within two per cent") {
+    curved_surface const s = torus_surface(200, 80, 0.25);
+    auto const robust = error_of(s, estimate_curvature(s.mesh, quadric_fit{}));
+    CHECK(robust.rms < 0.02);
+    CHECK(robust.largest < 0.10);
+    auto const fast = error_of(s, estimate_curvature(s.mesh, tensor_fit{}));
+    CHECK(robust.rms < 0.3 * fast.rms);
+    CHECK(fast.rms < 0.08);
+    CHECK(error_of(s, estimate_curvature(s.mesh, cotangent{})).rms < 0.25);
+}
+
+TEST_CASE("cotangents with mixed areas stay right at vertices of five neighbours") {
+    curved_surface const s = sphere(5);
+    CHECK(error_of(s, estimate_curvature(s.mesh, cotangent{})).largest < 1e-3);
+}
+
+TEST_CASE("a quadric is recovered exactly by the quadric fit") {
+    curved_surface s = parametric(
+        21, 21, false, false, 0.3, [](double u, double v) { return vec3{u - 0.5, v - 0.5, 0}; },
+        [](double, double) { return 0.0; });
+    // z = x^2 + 3 x y - 2 y^2 at its only point with a level tangent plane.
+    std::size_t const middle = 10 * 21 + 10;
+    vec3 const at = s.mesh.positions[middle];
+    for (vec3& p : s.mesh.positions) {
+        double const x = p[0] - at[0];
+        double const y = p[1] - at[1];
+        p[2] = 0.1 * (x * x + 3 * x * y - 2 * y * y);
+    }
+    double const h = -0.1 * (1 - 2);  // -(z_xx + z_yy) / 2
+    CHECK(estimate_curvature(s.mesh, quadric_fit{})[middle] == Approx(h).margin(2e-4));
+}
+
+TEMPLATE_TEST_CASE("threads change no bit of a curvature", "[threads]", tensor_fit, cotangent, quadric_fit, bubble_ratio) {
+    curved_surface const s = torus_surface(90, 60, 0.25);
+    auto const one = estimate_curvature(s.mesh, TestType{});
+    for (std::size_t threads : {2U, 3U, 7U}) {
+        thread_pool const pool(threads);
+        auto const many = estimate_curvature(s.mesh, TestType{}, pool);
+        REQUIRE(std::equal(one.begin(), one.end(), many.begin(), [](double a, double b) {
+            return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+        }));
+    }
+}
+
+TEMPLATE_TEST_CASE("open, irregular and real meshes give finite curvature", "", tensor_fit, cotangent, quadric_fit, bubble_ratio) {
+    curved_surface const open = cylinder(20, 9, 0.25);
+    for (double const h : estimate_curvature(open.mesh, TestType{})) CHECK(std::isfinite(h));
+    for (char const* name : {"meshes/hand_lowres.obj", "meshes/marble_player_9k.obj"}) {
+        auto const path = find(name);
+        if (path.empty()) {
+            WARN("skipped: " << name << " is not here");
+            continue;
+        }
+        triangle_surface const s = triangles_of(read_mesh(path).mesh);
+        for (double const h : estimate_curvature(s, TestType{})) REQUIRE(std::isfinite(h));
+    }
+}
+
+TEST_CASE("estimate_curvature names the vertex and the corner that are wrong") {
+    triangle_surface s = triangles_of(icosphere(0));
+    s.positions[3] = vec3{0, std::numeric_limits<double>::quiet_NaN(), 0};
+    CHECK_THROWS_WITH(estimate_curvature(s), Catch::Contains("vertex 3"));
+    s = triangles_of(icosphere(0));
+    s.triangles[7][1] = 99;
+    CHECK_THROWS_WITH(estimate_curvature(s), Catch::Contains("face 7") && Catch::Contains("99"));
+    CHECK_THROWS_AS(estimate_curvature(triangles_of(icosphere(0)), bubble_ratio{.radius = -1}), invalid_input);
+}
+
+TEST_CASE("a ridge has positive curvature and a valley negative, in every estimator") {
+    // A roof and the same roof upside down.
+    for (double const up : {1.0, -1.0}) {
+        curved_surface const s = parametric(
+            17, 17, false, false, 0,
+            [&](double u, double v) { return vec3{u - 0.5, v - 0.5, -up * std::fabs(u - 0.5)}; },
+            [](double, double) { return 0.0; });
+        std::size_t const middle = 8 * 17 + 8;
+        CHECK(up * estimate_curvature(s.mesh, tensor_fit{})[middle] > 1);
+        CHECK(up * estimate_curvature(s.mesh, cotangent{})[middle] > 1);
+        CHECK(up * estimate_curvature(s.mesh, quadric_fit{})[middle] > 1);
+        CHECK(up * estimate_curvature(s.mesh, bubble_ratio{})[middle] > 1);
+    }
+}
