@@ -6,6 +6,7 @@
 #include <tafoni/core/index.hpp>
 #include <tafoni/io/detail/exact_welder.hpp>
 #include <tafoni/io/detail/load_file.hpp>
+#include <tafoni/io/detail/load_little.hpp>
 #include <tafoni/io/detail/parse_number.hpp>
 #include <tafoni/io/detail/source_text.hpp>
 #include <tafoni/io/mesh_file.hpp>
@@ -20,16 +21,6 @@
 
 namespace tafoni {
 namespace detail {
-
-/// An unsigned number of `Bytes` bytes, little end first.
-template <class T>
-[[nodiscard]] T load_little(char const* at) noexcept {
-    T value = 0;
-    for (std::size_t k = 0; k < sizeof(T); ++k) {
-        value = static_cast<T>(value | static_cast<T>(static_cast<T>(static_cast<unsigned char>(at[k])) << (8 * k)));
-    }
-    return value;
-}
 
 /// True where the size of the file is the one that the count of a binary STL asks for.
 [[nodiscard]] inline bool is_binary_stl(std::string_view bytes) noexcept {

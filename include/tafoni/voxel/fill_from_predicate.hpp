@@ -6,11 +6,8 @@
 #include <tafoni/voxel/concepts.hpp>
 #include <tafoni/voxel/detail/fill_bricks.hpp>
 
-#include <algorithm>
-#include <bit>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 
 namespace tafoni {
 
@@ -26,29 +23,7 @@ struct fill_from_predicate_fn {
     std::size_t operator()(G& grid, Inside const& inside) const {
         grid_frame const frame = frame_of(grid);
         frame.validate();
-        brick_target<G> target(grid);
-        std::array<std::size_t, 3> const size = target.size();
-        up_rotation const rotation = target.rotation();
-        std::size_t rock = 0;
-        auto const to_coordinate = [](std::size_t x) { return static_cast<std::int32_t>(x); };
-        for (std::size_t z = 0; z < size[2]; z += 32) {
-            for (std::size_t y = 0; y < size[1]; y += 32) {
-                for (std::size_t x = 0; x < size[0]; x += 32) {
-                    brick_bits bits{};
-                    for (std::size_t k = z; k < std::min(z + 32, size[2]); ++k) {
-                        for (std::size_t j = y; j < std::min(y + 32, size[1]); ++j) {
-                            for (std::size_t i = x; i < std::min(x + 32, size[0]); ++i) {
-                                voxel const user = rotation.to_user({to_coordinate(i), to_coordinate(j), to_coordinate(k)}, size);
-                                if (inside(frame.centre(user))) bits[i - x + 32 * (j - y)] |= std::uint32_t{1} << (k - z);
-                            }
-                        }
-                    }
-                    for (std::uint32_t const word : bits) rock += static_cast<std::size_t>(std::popcount(word));
-                    target.put({to_coordinate(x), to_coordinate(y), to_coordinate(z)}, bits);
-                }
-            }
-        }
-        return rock;
+        return fill_voxels(grid, [&](voxel v) -> bool { return inside(frame.centre(v)); });
     }
 };
 

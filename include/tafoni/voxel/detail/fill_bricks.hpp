@@ -73,25 +73,43 @@ public:
 
     void put_uniform(voxel low, bool rock) { grid_.fill_uniform(grid_.brick_of(low), rock); }
     void put(voxel low, brick_bits const& bits) {
-        std::size_t const b = grid_.brick_of(low);
-        bool air = true;
-        bool rock = true;
-        for (std::size_t c = 0; c < 1024 && (air || rock); ++c) {
-            air = air && bits[c] == 0;
-            rock = rock && bits[c] == grid_.inside_word(b, c);
-        }
-        if (air || rock) {
-            grid_.fill_uniform(b, rock && !air);
-            return;
-        }
-        sparse_grid::brick& stored = grid_.make_mixed(b);
-        stored.solid = bits;
-        stored.colluvium.fill(0);
+        sparse_grid::brick brick;
+        brick.solid = bits;
+        grid_.assign_brick(grid_.brick_of(low), brick);
     }
 
 private:
     sparse_grid& grid_;
 };
+
+/// Fills a grid voxel by voxel, brick by brick of 32^3 and along x first, with rock where is_rock(voxel in the
+/// user's axes) is true. Returns the voxels of rock. O(voxels).
+template <editable_voxel_grid G, class IsRock>
+std::size_t fill_voxels(G& grid, IsRock const& is_rock) {
+    brick_target<G> target(grid);
+    std::array<std::size_t, 3> const size = target.size();
+    up_rotation const rotation = target.rotation();
+    std::size_t rock = 0;
+    auto const to_coordinate = [](std::size_t x) { return static_cast<std::int32_t>(x); };
+    for (std::size_t z = 0; z < size[2]; z += 32) {
+        for (std::size_t y = 0; y < size[1]; y += 32) {
+            for (std::size_t x = 0; x < size[0]; x += 32) {
+                brick_bits bits{};
+                for (std::size_t k = z; k < std::min(z + 32, size[2]); ++k) {
+                    for (std::size_t j = y; j < std::min(y + 32, size[1]); ++j) {
+                        for (std::size_t i = x; i < std::min(x + 32, size[0]); ++i) {
+                            voxel const at{to_coordinate(i), to_coordinate(j), to_coordinate(k)};
+                            if (is_rock(rotation.to_user(at, size))) bits[i - x + 32 * (j - y)] |= std::uint32_t{1} << (k - z);
+                        }
+                    }
+                }
+                for (std::uint32_t const word : bits) rock += static_cast<std::size_t>(std::popcount(word));
+                target.put({to_coordinate(x), to_coordinate(y), to_coordinate(z)}, bits);
+            }
+        }
+    }
+    return rock;
+}
 
 /// Rock from which winding number on, for the voxels of a brick; this one: from 1 on, everywhere.
 struct from_one {
