@@ -18,6 +18,7 @@
 #include <tafoni/curvature/bubble_ratio.hpp>
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/cotangent.hpp>
+#include <tafoni/curvature/displacement.hpp>
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/curvature/quadric_fit.hpp>
 #include <tafoni/curvature/tensor_fit.hpp>
@@ -92,6 +93,7 @@
 #include <tafoni/graph/split.hpp>
 #include <tafoni/graph/surface_walk.hpp>
 #include <tafoni/io/esri_ascii.hpp>
+#include <tafoni/io/fill_from_vox.hpp>
 #include <tafoni/io/graph_vtp.hpp>
 #include <tafoni/io/mesh_file.hpp>
 #include <tafoni/io/obj.hpp>
@@ -99,6 +101,7 @@
 #include <tafoni/io/polyline_set.hpp>
 #include <tafoni/io/read_durability.hpp>
 #include <tafoni/io/read_mesh.hpp>
+#include <tafoni/io/read_nrrd.hpp>
 #include <tafoni/io/read_obj.hpp>
 #include <tafoni/io/read_pgm.hpp>
 #include <tafoni/io/read_ply.hpp>
@@ -124,6 +127,7 @@
 #include <tafoni/percolation/percolate.hpp>
 #include <tafoni/percolation/rainfall.hpp>
 #include <tafoni/percolation/seepage.hpp>
+#include <tafoni/repair/collapse_short_edges.hpp>
 #include <tafoni/rules/concepts.hpp>
 #include <tafoni/rules/depletion_soaking.hpp>
 #include <tafoni/rules/low_life_breakage.hpp>
@@ -149,18 +153,23 @@
 #include <tafoni/voxel/disc_bubble.hpp>
 #include <tafoni/voxel/ellipsoid_bubble.hpp>
 #include <tafoni/voxel/fallen_block.hpp>
+#include <tafoni/voxel/fill_from_heights.hpp>
+#include <tafoni/voxel/fill_from_image.hpp>
 #include <tafoni/voxel/fill_from_predicate.hpp>
+#include <tafoni/voxel/fill_from_samples.hpp>
 #include <tafoni/voxel/fill_from_solid.hpp>
 #include <tafoni/voxel/frame_for.hpp>
 #include <tafoni/voxel/gray_image.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
 #include <tafoni/voxel/gumdrop_bubble.hpp>
+#include <tafoni/voxel/isosurface.hpp>
 #include <tafoni/voxel/joints.hpp>
 #include <tafoni/voxel/predicate_bubble.hpp>
 #include <tafoni/voxel/rates.hpp>
 #include <tafoni/voxel/repose_rule.hpp>
 #include <tafoni/voxel/rockfall.hpp>
 #include <tafoni/voxel/rockfall_options.hpp>
+#include <tafoni/voxel/sample_volume.hpp>
 #include <tafoni/voxel/single_bubble.hpp>
 #include <tafoni/voxel/span_grid.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
@@ -168,6 +177,7 @@
 #include <tafoni/voxel/voxel.hpp>
 #include <tafoni/voxel/voxel_change.hpp>
 #include <tafoni/voxel/voxel_surface.hpp>
+#include <tafoni/weathering/curvature_weathering.hpp>
 #include <tafoni/weathering/erase_fallen.hpp>
 #include <tafoni/weathering/frost_checkpoint.hpp>
 #include <tafoni/weathering/frost_presets.hpp>
