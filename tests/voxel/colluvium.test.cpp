@@ -27,7 +27,7 @@ sparse_grid box(std::size_t nx, std::size_t ny, std::size_t nz, grid_border cons
 
 grid_border all_sides(border_kind k) { return {{k, k, k, k, k, k}}; }
 /// Open to the sides, a floor below.
-[[maybe_unused]] grid_border floor_of(border_kind sides) {
+grid_border floor_of(border_kind sides) {
     auto b = all_sides(sides);
     b.sides[4] = border_kind::rock;
     return b;
@@ -190,5 +190,95 @@ TEST_CASE("after settling no grain hangs or stands too steep, and none is lost, 
         }
         CHECK(net);
         CHECK(same_voxels(replayed, s.grid));
+    }
+}
+
+namespace {
+
+/// Claims threads and takes the blocks from the last to the first.
+struct backwards {
+    template <class F>
+    void for_blocks(std::size_t n, std::size_t grain, F const& f) const {
+        std::size_t const blocks = (n + grain - 1) / grain;
+        for (std::size_t b = blocks; b-- > 0;) f(b * grain, std::min(n, b * grain + grain));
+    }
+    std::size_t thread_count() const noexcept { return 3; }
+};
+static_assert(executor<backwards>);
+
+/// A tower with a shelf and a tunnel that loses a good part of its skin: grains by the thousand on each other's way.
+scene crumbling_tower(repose_rule const& rule) {
+    auto border = floor_of(border_kind::air);
+    border.sides[0] = border_kind::rock;
+    border.sides[2] = border_kind::extend;
+    scene s{box(64, 60, 90, border)};
+    auto stone = [](voxel v) {
+        bool const tunnel = std::abs(v.y - 30) < 4 && std::abs(v.z - 20) < 4;
+        bool const shelf = v.z > 50 && v.z < 54 && v.x < 55 && v.y < 50;
+        int const r = (v.x - 30) * (v.x - 30) + (v.y - 30) * (v.y - 30);
+        return shelf || (r < 250 && v.z < 85 && !tunnel);
+    };
+    for (std::size_t b = 0; b < s.grid.brick_count(); ++b) {
+        s.grid.fill_brick(b, [&](voxel v) { return stone(v) ? rock : air; });
+    }
+    stream draw(7, stage::user, 0);
+    for (int round = 0; round < 2; ++round) {
+        s.released.clear();
+        s.opened.clear();
+        for (voxel const v : all_of(s.grid, rock)) {
+            if (draw.chance(0.15)) s.released.push_back(v);
+        }
+        s.opened = s.released;
+        for (voxel const v : all_of(s.grid, loose)) {
+            if (draw.chance(0.2)) s.opened.push_back(v);
+        }
+        for (voxel const v : s.opened) s.grid.set(v, air);
+        if (round == 0) run(s.grid, s.released, s.opened, rule);
+    }
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("grains settle in parallel exactly as one after the other", "[colluvium]") {
+    for (repose_rule const rule : {repose_rule{}, repose_rule{.angle = 30, .baseline = 4}, repose_rule{.angle = 70, .baseline = 2}}) {
+        scene const s = crumbling_tower(rule);
+        CAPTURE(rule.angle, rule.baseline, s.released.size());
+        REQUIRE(s.released.size() > 5000);
+        sparse_grid one = s.grid;
+        sparse_grid many = s.grid;
+        outcome const a = run(one, s.released, s.opened, rule);
+        outcome const b = run(many, s.released, s.opened, rule, 1, 1, backwards{});
+        CHECK(a.report.moved > 500);
+        CHECK(a.report == b.report);
+        CHECK(a.changes == b.changes);
+        CHECK(same_voxels(one, many));
+        CHECK(restless(many, rule) == 0);
+    }
+    for (std::uint64_t seed = 100; seed < 140; ++seed) {
+        repose_rule const rule{.angle = 40, .baseline = 1 + static_cast<int>(seed % 3)};
+        scene s = random_scene(seed, rule);
+        sparse_grid many = s.grid;
+        CAPTURE(seed);
+        outcome const a = run(s.grid, s.released, s.opened, rule);
+        outcome const b = run(many, s.released, s.opened, rule, 1, 1, backwards{});
+        CHECK(a.report == b.report);
+        CHECK(a.changes == b.changes);
+    }
+}
+
+TEST_CASE("every number of threads lays the grains into the same voxels", "[colluvium][threads]") {
+    scene const s = crumbling_tower({});
+    sparse_grid one = s.grid;
+    outcome const a = run(one, s.released, s.opened);
+    for (std::size_t const threads : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}}) {
+        thread_pool const pool(threads);
+        sparse_grid g = s.grid;
+        outcome o;
+        o.report = settle(g, s.released, s.opened, repose_rule{}, 1, 1, pool, o.changes);
+        CAPTURE(threads);
+        CHECK(o.report == a.report);
+        CHECK(o.changes == a.changes);
+        CHECK(same_voxels(g, one));
     }
 }

@@ -54,54 +54,62 @@ namespace tafoni::detail {
     return released;
 }
 
-/// The sequential loop in voxel order.
+/// The loop in voxel order over the grains of a call.
+///
+/// With more than one thread it goes in rounds: every grain of a round finds its way over the grid as it stands
+/// before the round, in parallel, and keeps the way; then the grains are laid down one by one in order. A part of
+/// a way whose surroundings no grain of this round has touched is as it would have been found now and is
+/// skipped; any other is gone again. So the result is that of the loop, bit by bit, whatever the rounds and threads
+/// are [deterministic reservations with the check moved into the commit: Blelloch, Fineman, Gibbons, Shun 2012,
+/// Internally deterministic parallel algorithms can be fast].
 class settle_pass {
 public:
     settle_pass(sparse_grid& grid, grain_slide const& slide) : grid_(grid), slide_(slide) {}
 
     /// Lets grains go from voxels of air; returns how many left.
     template <class Executor>
-    std::size_t release(std::span<voxel const> grains, Executor const&) {
+    std::size_t release(std::span<voxel const> grains, Executor const& executor) {
         std::size_t left = 0;
-        for (voxel const v : grains) {
-            voxel p = v;
-            if (travel(p, slide_.grain_key(v)) == grain_slide::step::leaves) {
-                ++left;
-            } else {
+        in_order(grains, executor, [&](voxel, auto const& way) {
+            voxel p{};
+            if (way(p)) {
                 put(p, voxel_state::colluvium);
+            } else {
+                ++left;
             }
-        }
+        });
         return left;
     }
 
     template <class Executor>
-    void resettle(std::span<voxel const> opened, Executor const&, std::size_t& moved, std::size_t& left) {
-        std::vector<voxel> wave;
-        for (voxel const v : opened) {
+    void resettle(std::span<voxel const> opened, Executor const& executor, std::size_t& moved, std::size_t& left) {
+        std::vector<voxel> wave = collected(opened, executor, [this](voxel v, std::vector<voxel>& out) {
             voxel_state const s = grid_.state(v);
-            if (s == voxel_state::colluvium) wave.push_back(v);
-            if (s == voxel_state::air) unsettled_by(v, wave);
-        }
-        std::vector<voxel> next;
+            if (s == voxel_state::colluvium) out.push_back(v);
+            if (s == voxel_state::air) unsettled_by(v, out);
+        });
+        std::vector<voxel> lifted;
         while (!wave.empty()) {
             std::sort(wave.begin(), wave.end());
             wave.erase(std::unique(wave.begin(), wave.end()), wave.end());
-            next.clear();
-            for (voxel const v : wave) {
-                if (grid_.state(v) != voxel_state::colluvium) continue;
-                voxel p = v;
-                bool const leaves = travel(p, slide_.grain_key(v)) == grain_slide::step::leaves;
-                if (!leaves && p == v) continue;
+            lifted.clear();
+            in_order(std::span<voxel const>(wave), executor, [&](voxel v, auto const& way) {
+                if (grid_.state(v) != voxel_state::colluvium) return;
+                voxel p{};
+                bool const stays = way(p);
+                if (stays && p == v) return;
                 ++moved;
+                lifted.push_back(v);
                 put(v, voxel_state::air);
-                if (leaves) {
-                    ++left;
-                } else {
+                if (stays) {
                     put(p, voxel_state::colluvium);
+                } else {
+                    ++left;
                 }
-                unsettled_by(v, next);
-            }
-            wave.swap(next);
+            });
+            wave = collected(std::span<voxel const>(lifted), executor, [this](voxel v, std::vector<voxel>& out) {
+                if (!grid_.is_solid(v)) unsettled_by(v, out);
+            });
         }
     }
 
@@ -121,18 +129,137 @@ public:
     }
 
 private:
-    /// To the end of a grain's way. The voxel where it starts does not matter: it looks at lower ones only.
-    [[nodiscard]] grain_slide::step travel(voxel& p, std::uint64_t key) const noexcept {
-        if (slide_.fall(p) == grain_slide::step::leaves) return grain_slide::step::leaves;
+    static constexpr std::size_t round_size = 1024;  ///< grains whose ways are found over one state of the grid
+    static constexpr std::size_t block_size = 32;    ///< grains of a round that one thread takes at once
+    static constexpr std::size_t most_tiles = std::size_t{1} << 20;
+
+    /// The ways of a block of grains: where each begins and where it stands between its moves.
+    struct block_ways {
+        struct end {
+            std::size_t keys = 0;  ///< end in `keys`
+            voxel rest{};
+            bool leaves = false;
+        };
+        std::vector<std::uint64_t> keys{};
+        std::vector<end> ends{};
+    };
+
+    /// Calls act(start, way) for each start in order; way(p) brings p to the grain's rest in the grid as it is
+    /// at that moment, or answers false where the grain leaves. The voxel where a grain starts does not matter to
+    /// its way: it looks at lower ones only.
+    template <class Executor, class Act>
+    void in_order(std::span<voxel const> starts, Executor const& executor, Act const& act) {
+        if (executor.thread_count() < 2 || starts.size() < 2 * block_size) {
+            for (voxel const v : starts) act(v, [&](voxel& p) { return follow(p = v, v); });
+            return;
+        }
+        if (touched_.empty()) {
+            auto const tiles = [this](std::size_t axis) { return (grid_.size()[axis] >> tile_bits_) + 1; };
+            while (tiles(0) * tiles(1) > most_tiles) ++tile_bits_;
+            tiles_x_ = tiles(0);
+            touched_.assign(tiles(0) * tiles(1), 0);
+            ways_.resize(round_size / block_size);
+        }
+        for (std::size_t begin = 0; begin < starts.size(); begin += round_size) {
+            std::span<voxel const> const round = starts.subspan(begin, std::min(round_size, starts.size() - begin));
+            executor.for_blocks(round.size(), block_size, [&](std::size_t first, std::size_t last) {
+                find_ways(round.subspan(first, last - first), ways_[first / block_size]);
+            });
+            ++round_;
+            for (std::size_t i = 0; i < round.size(); ++i) {
+                block_ways const& ways = ways_[i / block_size];
+                std::size_t const j = i % block_size;
+                act(round[i], [&](voxel& p) { return follow_again(p, round[i], ways, j); });
+            }
+        }
+    }
+
+    [[nodiscard]] bool follow(voxel& p, voxel start) const noexcept {
+        if (slide_.fall(p) == grain_slide::step::leaves) return false;
+        std::uint64_t const key = slide_.grain_key(start);
         for (;;) {
             grain_slide::step const s = slide_.slide(p, key);
-            if (s != grain_slide::step::moves) return s;
+            if (s != grain_slide::step::moves) return s == grain_slide::step::rests;
         }
+    }
+
+    void find_ways(std::span<voxel const> starts, block_ways& out) const {
+        out.keys.clear();
+        out.ends.clear();
+        for (voxel const v : starts) {
+            voxel p = v;
+            std::uint64_t const key = slide_.grain_key(v);
+            out.keys.push_back(voxel_key(p));
+            grain_slide::step s = slide_.fall(p);
+            if (s != grain_slide::step::leaves) {
+                if (s == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
+                while ((s = slide_.slide(p, key)) == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
+            }
+            out.ends.push_back({out.keys.size(), p, s == grain_slide::step::leaves});
+        }
+    }
+
+    /// `follow`, by the way that was found before the round where it still holds.
+    [[nodiscard]] bool follow_again(voxel& p, voxel start, block_ways const& ways, std::size_t j) const noexcept {
+        std::size_t k = j == 0 ? 0 : ways.ends[j - 1].keys;
+        std::size_t const end = ways.ends[j].keys;
+        std::uint64_t const key = slide_.grain_key(start);
+        bool first = true;
+        for (;;) {
+            while (k < end && touched_[tile_of(voxel_of_key(ways.keys[k]))] != round_) {
+                ++k;
+                first = false;
+            }
+            if (k == end) {
+                p = ways.ends[j].rest;
+                return !ways.ends[j].leaves;
+            }
+            p = voxel_of_key(ways.keys[k]);
+            if (first && slide_.fall(p) == grain_slide::step::leaves) return false;
+            first = false;
+            // A way that comes to where the old one stood goes on as that did.
+            for (++k;;) {
+                while (k < end && voxel_of_key(ways.keys[k]).z > p.z) ++k;
+                if (k < end && ways.keys[k] == voxel_key(p)) break;
+                grain_slide::step const s = slide_.slide(p, key);
+                if (s != grain_slide::step::moves) return s == grain_slide::step::rests;
+            }
+        }
+    }
+
+    /// find(voxel, found) for every voxel, one after the other or in parallel; what was found, in order.
+    template <class Executor, class Find>
+    [[nodiscard]] static std::vector<voxel> collected(std::span<voxel const> voxels, Executor const& executor, Find const& find) {
+        std::vector<voxel> out;
+        std::size_t const grain = 16 * block_size;
+        if (executor.thread_count() < 2 || voxels.size() < 2 * grain) {
+            for (voxel const v : voxels) find(v, out);
+            return out;
+        }
+        std::vector<std::vector<voxel>> parts((voxels.size() + grain - 1) / grain);
+        executor.for_blocks(voxels.size(), grain, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) find(voxels[i], parts[first / grain]);
+        });
+        for (auto const& part : parts) out.insert(out.end(), part.begin(), part.end());
+        return out;
+    }
+
+    [[nodiscard]] std::size_t tile_of(voxel v) const noexcept {
+        return static_cast<std::size_t>(v.x >> tile_bits_) + tiles_x_ * static_cast<std::size_t>(v.y >> tile_bits_);
     }
 
     void put(voxel v, voxel_state s) {
         grid_.set(v, s);
         puts_.push_back(voxel_key(v));
+        if (touched_.empty()) return;
+        // Whoever stands up to a baseline away along an axis has looked at this column.
+        std::int32_t const reach = slide_.baseline();
+        for (std::int32_t k = -reach; k <= reach; ++k) {
+            voxel const x{v.x + k, v.y, v.z};
+            voxel const y{v.x, v.y + k, v.z};
+            if (grid_.contains(x)) touched_[tile_of(x)] = round_;
+            if (grid_.contains(y)) touched_[tile_of(y)] = round_;
+        }
     }
 
     /// Colluvium that may have stood because `v` was not air: the voxel above it, and what looks into or
@@ -176,6 +303,11 @@ private:
     sparse_grid& grid_;
     grain_slide slide_;
     std::vector<std::uint64_t> puts_{};
+    std::vector<block_ways> ways_{};
+    std::vector<std::uint32_t> touched_{};  ///< per tile the last round in which something near it changed
+    std::size_t tiles_x_ = 0;
+    int tile_bits_ = 0;  ///< a tile is a square of 2^bits columns; single ones unless the grid is very wide
+    std::uint32_t round_ = 0;
 };
 
 }  // namespace tafoni::detail
