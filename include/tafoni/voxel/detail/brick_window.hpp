@@ -24,33 +24,25 @@ public:
         voxel const low = grid.brick_corner(brick);
         auto const& bricks = grid.bricks();
         std::array<std::int32_t, 3> const at{low.x >> 5, low.y >> 5, low.z >> 5};
+        std::array<std::uint32_t const*, 3> words{};
+        std::array<plane_words, 3> buffers;  // left as it is: 12 KiB that are seldom needed
         for (int dy = -1; dy <= 1; ++dy) {
             for (int dx = -1; dx <= 1; ++dx) {
                 if (margin == 0 && (dx != 0 || dy != 0)) continue;
-                int const x_lo = dx < 0 ? 32 - margin : 0;
-                int const x_hi = dx > 0 ? margin : 32;
-                int const y_lo = dy < 0 ? 32 - margin : 0;
-                int const y_hi = dy > 0 ? margin : 32;
+                patch const p{.x_lo = dx < 0 ? 32 - margin : 0, .x_hi = dx > 0 ? margin : 32,
+                              .y_lo = dy < 0 ? 32 - margin : 0, .y_hi = dy > 0 ? margin : 32};
                 bool const beside = at[0] + dx < 0 || at[0] + dx >= bricks[0] || at[1] + dy < 0 ||
                                     at[1] + dy >= bricks[1];
-                auto const word = [&](int dz, std::size_t column) -> std::uint64_t {
-                    if (beside || at[2] + dz < 0 || at[2] + dz >= bricks[2]) return 0;
+                for (int dz = -1; dz <= 1; ++dz) {
+                    bool const beyond = beside || at[2] + dz < 0 || at[2] + dz >= bricks[2];
                     auto const step = static_cast<std::ptrdiff_t>(bricks[0]);
                     auto const b = static_cast<std::ptrdiff_t>(brick) +
                                    dx + step * (dy + static_cast<std::ptrdiff_t>(bricks[1]) * dz);
-                    return grid.plane_word(plane, static_cast<std::size_t>(b), column);
-                };
-                for (int y = y_lo; y < y_hi; ++y) {
-                    for (int x = x_lo; x < x_hi; ++x) {
-                        auto const column = static_cast<std::size_t>(x + 32 * y);
-                        std::uint64_t bits = word(0, column) << margin;
-                        if (margin > 0) {
-                            bits |= word(-1, column) >> (32 - margin);
-                            bits |= word(1, column) << (32 + margin);
-                        }
-                        row_at(x + 32 * dx, y + 32 * dy) = bits & row_mask();
-                    }
+                    auto const which = static_cast<std::size_t>(dz + 1);
+                    words[which] = beyond ? none.data()
+                                          : words_of(grid, plane, static_cast<std::size_t>(b), p, buffers[which]);
                 }
+                join(words, p, dx, dy);
             }
         }
         patch_border(grid, plane, low);
@@ -69,6 +61,58 @@ private:
         return rows_[static_cast<std::size_t>(x + margin_ + 64 * (y + margin_))];
     }
     [[nodiscard]] std::uint64_t row_mask() const noexcept { return ~std::uint64_t{0} >> (32 - 2 * margin_); }
+
+    using plane_words = std::array<std::uint32_t, 1024>;
+
+    /// The columns of a neighbouring brick that the window holds.
+    struct patch {
+        int x_lo, x_hi, y_lo, y_hi;
+    };
+
+    static constexpr plane_words none{};
+    static constexpr plane_words all = [] {
+        plane_words w{};
+        w.fill(~std::uint32_t{0});
+        return w;
+    }();
+
+    /// Words of a brick, where they are stored or, at least for the patch, in the buffer.
+    static std::uint32_t const* words_of(sparse_grid const& grid, voxel_plane plane, std::size_t b, patch const& p,
+                                         plane_words& buffer) {
+        sparse_grid::brick const* const stored = grid.stored(b);
+        if (stored != nullptr && plane == voxel_plane::solid) return stored->solid.data();
+        if (stored != nullptr && plane == voxel_plane::colluvium) return stored->colluvium.data();
+        if (stored == nullptr) {
+            if (grid.is_air_brick(b) || plane == voxel_plane::colluvium) return none.data();
+            if (grid.inside_word(b, 1023) == ~std::uint32_t{0}) return all.data();
+        }
+        for (int y = p.y_lo; y < p.y_hi; ++y) {
+            for (int x = p.x_lo; x < p.x_hi; ++x) {
+                auto const column = static_cast<std::size_t>(x + 32 * y);
+                buffer[column] = grid.plane_word(plane, b, column);
+            }
+        }
+        return buffer.data();
+    }
+
+    /// Three bricks, one above the other, into one word per column.
+    void join(std::array<std::uint32_t const*, 3> const& words, patch const& p, int dx, int dy) noexcept {
+        std::uint64_t const mask = row_mask();
+        for (int y = p.y_lo; y < p.y_hi; ++y) {
+            std::uint32_t const* const below = words[0] + 32 * y;
+            std::uint32_t const* const here = words[1] + 32 * y;
+            std::uint32_t const* const above = words[2] + 32 * y;
+            std::uint64_t* const rows = &row_at(p.x_lo + 32 * dx, y + 32 * dy);
+            if (margin_ == 0) {
+                for (int x = p.x_lo; x < p.x_hi; ++x) rows[x - p.x_lo] = here[x];
+                continue;
+            }
+            for (int x = p.x_lo; x < p.x_hi; ++x) {
+                rows[x - p.x_lo] = ((std::uint64_t{below[x]} >> (32 - margin_)) | (std::uint64_t{here[x]} << margin_) |
+                                    (std::uint64_t{above[x]} << (32 + margin_))) & mask;
+            }
+        }
+    }
 
     /// What lies beyond the grid shows rock or goes on as the border says.
     void patch_border(sparse_grid const& grid, voxel_plane plane, voxel low) {
