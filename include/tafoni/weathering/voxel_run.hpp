@@ -75,7 +75,11 @@ public:
         for (voxel_phase const& phase : schedule.phases) {
             core_.rates.set(phase.spheroidal, phase.cavernous);
             for (std::uint64_t k = 0; going && k < phase.steps; ++k) {
-                core_.step(threads);
+                if (schedule.clock == voxel_clock::steps) {
+                    core_.step(threads);
+                } else {
+                    core_.step_by_events(threads);
+                }
                 ++done;
                 if (schedule.snapshot_every > 0 && schedule.on_snapshot &&
                     core_.count.steps % schedule.snapshot_every == 0 &&
@@ -115,20 +119,21 @@ public:
     /// A voxel of the skin (turned axes), or nothing. O(log of the brick's skin).
     [[nodiscard]] std::optional<skin_voxel> at(voxel v) const noexcept {
         if (!core_.grid.contains(v)) return std::nullopt;
-        detail::voxel_skin const* const skin = core_.skin_of(core_.grid.brick_of(v));
-        if (skin == nullptr) return std::nullopt;
-        std::size_t const i = skin->find(detail::place_in_brick(v));
-        if (i == skin->size()) return std::nullopt;
-        return view(*skin, i, v);
+        std::uint32_t const slot = core_.skins.slot_of(core_.grid.brick_of(v));
+        if (slot == detail::voxel_skins::none) return std::nullopt;
+        detail::voxel_skin const& skin = core_.skins[slot];
+        std::size_t const i = skin.find(detail::position_of(v));
+        if (i == skin.size()) return std::nullopt;
+        return view(skin, i, v);
     }
     /// Every voxel of the skin, in voxel order. O(n log n).
     [[nodiscard]] std::vector<skin_voxel> skin() const {
         std::vector<skin_voxel> out;
         out.reserve(core_.count.surface_voxels);
         for (std::size_t s = 0; s < core_.skins.size(); ++s) {
-            voxel const corner = core_.grid.brick_corner(core_.bricks[s]);
+            voxel const corner = core_.grid.brick_corner(core_.skins.brick(s));
             for (std::size_t i = 0; i < core_.skins[s].size(); ++i) {
-                out.push_back(view(core_.skins[s], i, detail::voxel_at_place(corner, core_.skins[s].place[i])));
+                out.push_back(view(core_.skins[s], i, detail::at_position(corner, core_.skins[s].position[i])));
             }
         }
         std::sort(out.begin(), out.end(), [](skin_voxel const& a, skin_voxel const& b) { return a.at < b.at; });
@@ -146,14 +151,42 @@ public:
     void replace(Process process) {
         Process former = std::exchange(core_.process, checked(std::move(process)));
         try {
-            core_.read_bubbles();
             auto rates = core_.rates;
             rates.read(core_.process, core_.options.measure);
             core_.rescan(inline_executor{});
             core_.rates = std::move(rates);
         } catch (...) {
             core_.process = std::move(former);
-            core_.read_bubbles();
+            throw;
+        }
+    }
+    /// One policy of a `voxel_weathering`, likewise.
+    void replace(decltype(Process::bubbles) bubbles) {
+        Process p = core_.process;
+        p.bubbles = std::move(bubbles);
+        replace(std::move(p));
+    }
+    void replace(decltype(Process::rate) rate) {
+        Process p = core_.process;
+        p.rate = std::move(rate);
+        replace(std::move(p));
+    }
+    void replace(decltype(Process::durability) durability) {
+        Process p = core_.process;
+        p.durability = std::move(durability);
+        replace(std::move(p));
+    }
+    /// Replaces the options between steps; `up` and `border` stay those of the grid. Strong guarantee.
+    void replace(voxel_options const& options) {
+        voxel_options former = std::exchange(core_.options, checked(options));
+        try {
+            auto rates = core_.rates;
+            rates.read(core_.process, options.measure);
+            core_.rescan(inline_executor{});
+            core_.start_rockfall();
+            core_.rates = std::move(rates);
+        } catch (...) {
+            core_.options = std::move(former);
             throw;
         }
     }
@@ -182,7 +215,7 @@ private:
         double const size = core_.process.bubbles.stencils()[skin.bubble[i]].size();
         return {.at = v,
                 .state = core_.grid.state(v),
-                .decimation = skin.left[core_.now][i],
+                .decimation = skin.left[skin.now][i],
                 .durability = skin.durability[i],
                 .air_share = skin.air[i] / size,
                 .bubble = skin.bubble[i]};

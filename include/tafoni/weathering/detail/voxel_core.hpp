@@ -6,38 +6,49 @@
 #include <tafoni/core/executor.hpp>
 #include <tafoni/voxel/colluvium.hpp>
 #include <tafoni/voxel/rockfall.hpp>
-#include <tafoni/weathering/detail/voxel_count.hpp>
 #include <tafoni/weathering/detail/voxel_rates.hpp>
-#include <tafoni/weathering/detail/voxel_skin.hpp>
+#include <tafoni/weathering/detail/voxel_skins.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <queue>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tafoni::detail {
 
-/// Nothing that `step` writes before its last lines, which cannot throw, belongs to the state: a throw leaves
-/// the state after the last complete step.
+/// Seconds, lap by lap.
+class lap_clock {
+public:
+    void into(double& sum) noexcept {
+        auto const t = std::chrono::steady_clock::now();
+        sum += std::chrono::duration<double>(t - last_).count();
+        last_ = t;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// What a step changes before its last lines, which cannot throw, is undone when anything throws: the state is
+/// then that after the last complete step (with events: after the last complete event).
 template <class Process>
 class voxel_core {
 public:
-    using seconds = voxel_report::stage_seconds;
-
     template <executor Executor>
     voxel_core(sparse_grid&& rock, Process&& policies, voxel_options const& chosen, Executor const& threads)
         : grid(std::move(rock)), process(std::move(policies)), options(chosen) {
         count.voxels_rock = grid.count(voxel_plane::rock);
         count.voxels_colluvium = grid.count(voxel_plane::colluvium);
         count.voxels_initial = count.voxels_rock + count.voxels_colluvium;
-        slot_of_.assign(grid.brick_count(), none);
-        stamp_.assign(grid.brick_count(), 0);
-        read_bubbles();
+        skins.reset(grid.brick_count());
         rates.read(process, options.measure);
         start_rockfall();
         rescan(threads);
@@ -49,45 +60,16 @@ public:
     voxel_report count{};
     std::vector<fallen_block> blocks{};
     voxel_rates rates{};
-    std::vector<std::size_t> bricks{};  ///< of the skins
-    std::vector<voxel_skin> skins{};
-    unsigned now = 0;  ///< which of the two decimations holds
+    voxel_skins skins{};
+    double time = 0;  ///< within a step that was left after an event by a throw; else 0
 
-    [[nodiscard]] voxel_skin const* skin_of(std::size_t brick) const noexcept {
-        return slot_of_[brick] == none ? nullptr : &skins[slot_of_[brick]];
-    }
-
-    /// Finds the skin anew; decimation of what was known stays. O(bricks + skin bubbles).
+    /// Asks for bubble and durability again, and counts. Decimation stays. Strong guarantee. O(bricks + skin bubbles).
     template <executor Executor>
     void rescan(Executor const& threads) {
-        ++stamp_now_;
-        touched_.clear();
-        for (std::size_t b = 0; b < grid.brick_count(); ++b) {
-            bool const known = slot_of_[b] != none;
-            if (known || (!grid.is_air_brick(b) && !buried(b))) touch(b);
-        }
-        copy_left_ = true;
-        rebuild(threads);
-        commit();
-        copy_left_ = false;
-    }
-
-    /// One step with the rates as they are.
-    template <executor Executor>
-    void step(Executor const& threads) {
-        auto const t0 = std::chrono::steady_clock::now();
-        decay(1.0, threads);
-        fall_and_rebuild(threads, t0);
-        ++count.steps;
-    }
-
-    void read_bubbles() {
-        auto const stencils = process.bubbles.stencils();
-        if (stencils.empty()) {
-            fail<invalid_input>(errc::empty_input, "voxel_weathering.bubbles: stencils() is empty, need at least 1");
-        }
-        reach_ = options.skin_depth;
-        for (bubble_stencil const& s : stencils) reach_ = std::max(reach_, s.reach());
+        skins.touch_all(grid);
+        skins.rebuild(grid, stencils(), options.skin_depth, asker(), voxel_skins::basis::replaced, threads);
+        skins.commit();
+        count.surface_voxels = skins.voxel_count();
     }
     void start_rockfall() {
         falls_.reset();
@@ -95,141 +77,202 @@ public:
         first_fall_ = true;
     }
 
-private:
-    static constexpr std::uint32_t none = 0xFFFFFFFF;
-
-    /// Rock all around and inside.
-    [[nodiscard]] bool buried(std::size_t b) const noexcept {
-        if (!grid.is_rock_brick(b)) return false;
-        voxel const low = grid.brick_corner(b);
-        std::array<voxel, 6> const beside{{{-1, 0, 0}, {32, 0, 0}, {0, -1, 0}, {0, 32, 0}, {0, 0, -1}, {0, 0, 32}}};
-        return std::all_of(beside.begin(), beside.end(), [&](voxel d) {
-            voxel const v = low + d;
-            return grid.contains(v) && grid.is_rock_brick(grid.brick_of(v));
-        });
-    }
-
-    void touch(std::size_t b) {
-        if (stamp_[b] == stamp_now_) return;
-        stamp_[b] = stamp_now_;
-        if (slot_of_[b] == none) {
-            bricks.push_back(b);
-            skins.emplace_back();
-            slot_of_[b] = static_cast<std::uint32_t>(skins.size() - 1);
-        }
-        touched_.push_back(slot_of_[b]);
-    }
-
-    /// Fills the other decimation and lists the voxels that fall.
+    /// All that is used up within the step falls at its end.
     template <executor Executor>
-    void decay(double time, Executor const& threads) {
+    void step(Executor const& threads) {
+        if (time > 0) return step_by_events(threads);
+        lap_clock clock;
         fallers_.resize(skins.size());
-        unsigned const next = now ^ 1u;
         threads.for_blocks(skins.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t s = begin; s < end; ++s) {
-                voxel_skin& skin = skins[s];
-                std::vector<std::uint16_t>& fallen = fallers_[s];
-                fallen.clear();
-                for (std::size_t i = 0; i < skin.size(); ++i) {
-                    double const rate = rates.at(skin.bubble[i], skin.air[i]) / skin.durability[i];
-                    double const left = skin.left[now][i] - rate * time;
-                    skin.left[next][i] = left;
-                    if (left <= 0) fallen.push_back(skin.place[i]);
-                }
+                advance(skins[s], 1);
+                list_fallers(s);
             }
         });
+        take_fallers();
+        change(threads, clock, [] {});
+        skins.turn();
+        finish(clock);
+        ++count.steps;
+        compact();
     }
 
+    /// What is used up falls at its time, all of the same instant at once, and the others go on at their new rates.
     template <executor Executor>
-    void fall_and_rebuild(Executor const& threads, std::chrono::steady_clock::time_point t0) {
-        seconds took{};
-        auto const lap = [&t0](double& into) {
-            auto const t1 = std::chrono::steady_clock::now();
-            into += std::chrono::duration<double>(t1 - t0).count();
-            t0 = t1;
-        };
-        voxel_report next = count;
+    void step_by_events(Executor const& threads) {
+        fall_queue queue;
+        for (std::size_t s = 0; s < skins.size(); ++s) enqueue(queue, s);
+        try {
+            while (!queue.empty() && queue.top().at <= 1) {
+                lap_clock clock;
+                double const at = queue.top().at;
+                fallers_.assign(skins.size(), {});
+                for (; !queue.empty() && queue.top().at == at; queue.pop()) {
+                    fall_time const& f = queue.top();
+                    if (f.born != born_[f.slot]) continue;
+                    voxel_skin const& skin = skins[f.slot];
+                    for (std::size_t i = 0; i < skin.size(); ++i) {
+                        if (falls_at(skin, i) == at) fallers_[f.slot].push_back(skin.position[i]);
+                    }
+                }
+                take_fallers();
+                if (changes_.empty()) continue;
+                change(threads, clock, [&] {
+                    for (std::uint32_t const s : skins.touched()) advance(skins[s], at);
+                });
+                for (std::uint32_t const s : skins.touched()) skins[s].now ^= 1u;
+                finish(clock);
+                for (std::uint32_t const s : skins.touched()) skins[s].clock = at;
+                time = at;
+                for (std::uint32_t const s : skins.touched()) enqueue(queue, s);
+            }
+        } catch (...) {
+            advance_all(time);
+            throw;
+        }
+        advance_all(1);
+        for (std::size_t s = 0; s < skins.size(); ++s) skins[s].clock = 0;
+        time = 0;
+        ++count.steps;
+        compact();
+    }
+
+    [[nodiscard]] std::span<bubble_stencil const> stencils() const { return process.bubbles.stencils(); }
+
+    voxel_report::stage_seconds taken{};
+
+private:
+    struct fall_time {
+        double at = 0;
+        std::uint32_t slot = 0;
+        std::uint64_t born = 0;  ///< which state of the brick it was told by
+
+        friend bool operator<(fall_time const& a, fall_time const& b) noexcept {
+            return a.at != b.at ? a.at > b.at : a.slot > b.slot;
+        }
+    };
+    using fall_queue = std::priority_queue<fall_time>;
+
+    [[nodiscard]] double rate(voxel_skin const& skin, std::size_t i) const noexcept {
+        return rates.at(skin.bubble[i], skin.air[i]) / skin.durability[i];
+    }
+    [[nodiscard]] double falls_at(voxel_skin const& skin, std::size_t i) const noexcept {
+        double const r = rate(skin, i);
+        double const left = skin.left[skin.now][i];
+        if (left <= 0) return skin.clock;
+        return r > 0 ? skin.clock + left / r : std::numeric_limits<double>::infinity();
+    }
+    void enqueue(fall_queue& queue, std::size_t s) {
+        voxel_skin const& skin = skins[s];
+        double first = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < skin.size(); ++i) first = std::min(first, falls_at(skin, i));
+        if (born_.size() <= s) born_.resize(skins.size(), 0);
+        ++born_[s];
+        if (first <= 1) queue.push({first, static_cast<std::uint32_t>(s), born_[s]});
+    }
+
+    /// Writes the other decimation: what is left at that time.
+    void advance(voxel_skin& skin, double to) const noexcept {
+        double const span = to - skin.clock;
+        std::vector<double> const& before = skin.left[skin.now];
+        std::vector<double>& after = skin.left[skin.now ^ 1u];
+        for (std::size_t i = 0; i < skin.size(); ++i) after[i] = before[i] - rate(skin, i) * span;
+    }
+    void advance_all(double to) noexcept {
+        for (std::size_t s = 0; s < skins.size(); ++s) {
+            advance(skins[s], to);
+            skins[s].now ^= 1u;
+            skins[s].clock = to;
+        }
+    }
+    void list_fallers(std::size_t s) {
+        fallers_[s].clear();
+        voxel_skin const& skin = skins[s];
+        std::vector<double> const& left = skin.left[skin.now ^ 1u];
+        for (std::size_t i = 0; i < skin.size(); ++i) {
+            if (left[i] <= 0) fallers_[s].push_back(skin.position[i]);
+        }
+    }
+    void take_fallers() {
         changes_.clear();
         for (std::size_t s = 0; s < fallers_.size(); ++s) {
             if (fallers_[s].empty()) continue;
-            voxel const corner = grid.brick_corner(bricks[s]);
-            grid.make_mixed(bricks[s]);
-            for (std::uint16_t const p : fallers_[s]) {
-                voxel const v = voxel_at_place(corner, p);
+            voxel const corner = grid.brick_corner(skins.brick(s));
+            grid.make_mixed(skins.brick(s));
+            for (brick_position const p : fallers_[s]) {
+                voxel const v = at_position(corner, p);
                 changes_.push_back({v, grid.state(v), voxel_state::air});
             }
         }
-        std::sort(changes_.begin(), changes_.end(), by_place);
-        std::vector<fallen_block> fallen;
-        if ((options.colluvium || options.rockfall) && !spare_) spare_.emplace(grid);
+        if (options.colluvium || options.rockfall) std::sort(changes_.begin(), changes_.end(), by_place);
+    }
+
+    /// Removes what is in `changes_`, lets rock fall and grains settle, and makes the skin anew aside.
+    template <executor Executor, class Prepare>
+    void change(Executor const& threads, lap_clock& clock, Prepare const& prepare) {
+        next_ = count;
+        fallen_.clear();
+        bool const more = options.colluvium || options.rockfall;
+        if (more && !spare_) spare_.emplace(grid);
         try {
-            for (voxel_change const& c : changes_) grid.set(c.at, c.after);
             for (voxel_change const& c : changes_) {
-                if (!options.colluvium || c.before == voxel_state::colluvium) ++next.voxels_vanished;
+                grid.set(c.at, c.after);
+                if (!options.colluvium || c.before == voxel_state::colluvium) ++next_.voxels_vanished;
             }
-            lap(took.weather);
-            if (options.rockfall && (first_fall_ || !changes_.empty())) {
-                std::vector<voxel> removed;
+            clock.into(taken.weather);
+            if (options.colluvium) {
+                released_.clear();
                 for (voxel_change const& c : changes_) {
-                    if (c.before == voxel_state::rock) removed.push_back(c.at);
+                    if (c.before == voxel_state::rock) released_.push_back(c.at);
                 }
-                fallen = falls_->fall(grid, removed, count.steps + 1, threads, changes_);
-                for (fallen_block const& b : fallen) next.voxels_fallen += b.voxels.size();
-                next.blocks += fallen.size();
-                first_fall_ = false;
             }
-            lap(took.rockfall);
-            net_changes();
-            if (options.colluvium && !changes_.empty()) {
-                std::vector<voxel> released;
-                std::vector<voxel> opened;
-                // What was rock and did not fall with a block becomes a grain.
-                for (std::size_t s = 0; s < fallers_.size(); ++s) {
-                    voxel const corner = grid.brick_corner(bricks[s]);
-                    for (std::uint16_t const p : fallers_[s]) released.push_back(voxel_at_place(corner, p));
-                }
-                std::sort(released.begin(), released.end());
-                std::erase_if(released, [&](voxel v) {
-                    return std::lower_bound(changes_.begin(), changes_.end(), voxel_change{v, {}, {}}, by_place)
-                               ->before != voxel_state::rock;
-                });
-                for (voxel_change const& c : changes_) opened.push_back(c.at);
-                settle_report const settled = settle(grid, released, opened, *options.colluvium, options.seed,
-                                                     count.steps, threads, changes_);
-                next.voxels_left += settled.left;
-                net_changes();
-            }
-            lap(took.settle);
+            let_rock_fall(threads);
+            clock.into(taken.rockfall);
+            let_grains_settle(threads);
+            clock.into(taken.settle);
             for (voxel_change const& c : changes_) {
-                if (c.before == voxel_state::rock) --next.voxels_rock;
-                if (c.before == voxel_state::colluvium) --next.voxels_colluvium;
-                if (c.after == voxel_state::rock) ++next.voxels_rock;
-                if (c.after == voxel_state::colluvium) ++next.voxels_colluvium;
+                if (c.before == voxel_state::rock) --next_.voxels_rock;
+                if (c.before == voxel_state::colluvium) --next_.voxels_colluvium;
+                if (c.after == voxel_state::rock) ++next_.voxels_rock;
+                if (c.after == voxel_state::colluvium) ++next_.voxels_colluvium;
             }
-            blocks.reserve(blocks.size() + fallen.size());
-            touch_changed();
-            rebuild(threads);
-            if (spare_) {
+            blocks.reserve(blocks.size() + fallen_.size());
+            int reach = options.skin_depth;
+            for (bubble_stencil const& s : stencils()) reach = std::max(reach, s.reach());
+            skins.touch_changed(grid, changes_, options.skin_depth, reach);
+            prepare();
+            skins.rebuild(grid, stencils(), options.skin_depth, asker(), voxel_skins::basis::next, threads);
+            if (more) {
                 for (voxel_change const& c : changes_) spare_->make_mixed(spare_->brick_of(c.at));
             }
         } catch (...) {
             undo();
             throw;
         }
-        for (fallen_block& b : fallen) blocks.push_back(std::move(b));
-        count = next;
-        commit();
-        if (spare_) {
-            for (voxel_change const& c : changes_) spare_->set(c.at, c.after);
-        }
-        lap(took.notify);
-        taken.weather += took.weather;
-        taken.rockfall += took.rockfall;
-        taken.settle += took.settle;
-        taken.notify += took.notify;
-        for (std::uint32_t const s : touched_) grid.compact(bricks[s]);
     }
-
+    template <executor Executor>
+    void let_rock_fall(Executor const& threads) {
+        if (!options.rockfall || (!first_fall_ && changes_.empty())) return;
+        removed_.clear();
+        for (voxel_change const& c : changes_) {
+            if (c.before == voxel_state::rock) removed_.push_back(c.at);
+        }
+        fallen_ = falls_->fall(grid, removed_, count.steps + 1, threads, changes_);
+        for (fallen_block const& b : fallen_) next_.voxels_fallen += b.voxels.size();
+        next_.blocks += fallen_.size();
+        first_fall_ = false;
+        net_changes();
+    }
+    template <executor Executor>
+    void let_grains_settle(Executor const& threads) {
+        if (!options.colluvium || changes_.empty()) return;
+        removed_.clear();
+        for (voxel_change const& c : changes_) removed_.push_back(c.at);
+        settle_report const settled =
+            settle(grid, released_, removed_, *options.colluvium, options.seed, count.steps, threads, changes_);
+        next_.voxels_left += settled.left;
+        net_changes();
+    }
     /// One entry for every voxel that anything happened to, in voxel order: first before, last after.
     void net_changes() {
         std::stable_sort(changes_.begin(), changes_.end(), by_place);
@@ -243,191 +286,66 @@ private:
         }
         changes_.resize(kept);
     }
-
     void undo() noexcept {
-        if (spare_) {
-            std::swap(grid, *spare_);
-            spare_.reset();
-            if (options.rockfall) {
-                falls_.reset();
-                first_fall_ = true;
-            }
-        } else {
+        if (!spare_) {
             for (voxel_change const& c : changes_) grid.set(c.at, c.before);
+            return;
         }
+        std::swap(grid, *spare_);
+        spare_.reset();
+        falls_.reset();
+        if (options.rockfall) start_rockfall();
     }
-
-    /// Bricks whose skin or counts may differ by the changes.
-    void touch_changed() {
-        ++stamp_now_;
-        touched_.clear();
-        for (voxel_change const& c : changes_) {
-            for_each_brick_within(c.at, options.skin_depth, [&](std::size_t b) { touch(b); });
-            for_each_brick_within(c.at, reach_, [&](std::size_t b) {
-                if (slot_of_[b] != none) touch(b);
-            });
+    /// What `change` has made holds from now on. Nothing here throws.
+    void finish(lap_clock& clock) noexcept {
+        for (fallen_block& b : fallen_) blocks.push_back(std::move(b));
+        count = next_;
+        count.surface_voxels += static_cast<std::uint64_t>(skins.commit());
+        if (spare_) {
+            for (voxel_change const& c : changes_) spare_->set(c.at, c.after);
         }
-        changed_.resize(std::max(changed_.size(), touched_.size()));
-        index_.resize(skins.size());
-        for (std::size_t k = 0; k < touched_.size(); ++k) {
-            index_[touched_[k]] = static_cast<std::uint32_t>(k);
-            changed_[k].clear();
-        }
-        for (voxel_change const& c : changes_) {
-            changed_[index_[slot_of_[grid.brick_of(c.at)]]].push_back(place_in_brick(c.at));
-        }
+        clock.into(taken.notify);
     }
-
-    template <class F>
-    void for_each_brick_within(voxel v, std::int32_t r, F const& f) const {
-        auto const& n = grid.bricks();
-        auto const low = [](std::int32_t x) { return std::max(x >> 5, 0); };
-        for (std::int32_t z = low(v.z - r); z <= std::min((v.z + r) >> 5, n[2] - 1); ++z) {
-            for (std::int32_t y = low(v.y - r); y <= std::min((v.y + r) >> 5, n[1] - 1); ++y) {
-                for (std::int32_t x = low(v.x - r); x <= std::min((v.x + r) >> 5, n[0] - 1); ++x) {
-                    f(grid.brick_of({x * 32, y * 32, z * 32}));
-                }
-            }
+    void compact() {
+        for (std::uint32_t const s : skins.touched()) {
+            grid.compact(skins.brick(s));
+            if (spare_) spare_->compact(skins.brick(s));
         }
-    }
-
-    template <executor Executor>
-    void rebuild(Executor const& threads) {
-        if (fresh_.size() < touched_.size()) fresh_.resize(touched_.size());
-        if (changed_.size() < touched_.size()) changed_.resize(touched_.size());
-        threads.for_blocks(touched_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            brick_window window;
-            for (std::size_t k = begin; k < end; ++k) rebuild_brick(k, window);
-        });
-    }
-
-    void rebuild_brick(std::size_t k, brick_window& window) {
-        std::size_t const brick = bricks[touched_[k]];
-        voxel_skin const& old = skins[touched_[k]];
-        voxel_skin& fresh = fresh_[k];
-        fresh.clear();
-        unsigned const next = now ^ 1u;
-        unsigned const from = copy_left_ ? now : next;
-        skin_words skin;
-        find_skin(grid, brick, options.skin_depth, window, skin);
-        skin_words changed{};
-        if (!copy_left_) {
-            for (std::uint16_t const p : changed_[k]) changed[p >> 5] |= std::uint32_t{1} << (p & 31);
-        }
-        auto const cover = [&](std::uint16_t p, double left) {
-            if ((changed[p >> 5] >> (p & 31) & 1) != 0 || !(left < 100)) return;
-            fresh.covered.push_back(p);
-            fresh.covered_left.push_back(left);
-        };
-        voxel const corner = grid.brick_corner(brick);
-        std::size_t i = 0;
-        std::size_t j = 0;
-        for (std::size_t c = 0; c < 1024; ++c) {
-            std::uint32_t bits = skin[c];
-            auto const end = static_cast<std::uint32_t>(32 * c + 32);
-            for (;;) {
-                std::uint32_t const p = bits != 0 ? static_cast<std::uint32_t>(32 * c) +
-                                                        static_cast<std::uint32_t>(std::countr_zero(bits))
-                                                  : end;
-                for (;;) {  // known before, not skin now
-                    bool const a = i < old.size() && old.place[i] < p;
-                    bool const b = j < old.covered.size() && old.covered[j] < p;
-                    if (!a && !b) break;
-                    if (a && (!b || old.place[i] < old.covered[j])) {
-                        cover(old.place[i], old.left[from][i]);
-                        ++i;
-                    } else {
-                        cover(old.covered[j], old.covered_left[j]);
-                        ++j;
-                    }
-                }
-                if (bits == 0) break;
-                bits &= bits - 1;
-                auto const place = static_cast<std::uint16_t>(p);
-                bool const same = (changed[c] >> (p & 31) & 1) == 0;
-                bool const known = i < old.size() && old.place[i] == p;
-                bool const was_covered = j < old.covered.size() && old.covered[j] == p;
-                fresh.place.push_back(place);
-                double left = 100;
-                if (known && same) {
-                    left = old.left[from][i];
-                } else if (was_covered && same) {
-                    left = old.covered_left[j];
-                }
-                fresh.left[next].push_back(left);
-                if (known && !copy_left_) {
-                    fresh.bubble.push_back(old.bubble[i]);
-                    fresh.durability.push_back(old.durability[i]);
-                } else {
-                    vec3 const at = grid.centre(voxel_at_place(corner, place));
-                    fresh.bubble.push_back(choose_bubble(at));
-                    fresh.durability.push_back(durability_at(at));
-                }
-                if (known) ++i;
-                if (was_covered) ++j;
-            }
-        }
-        fresh.left[now].resize(fresh.size());
-        fresh.air.resize(fresh.size());
-        count_skin(grid, brick, process.bubbles.stencils(), window, fresh);
-    }
-
-    /// Exchanges what was rebuilt, and the decimations. Nothing here throws.
-    void commit() noexcept {
-        std::uint64_t surface = count.surface_voxels;
-        for (std::size_t k = 0; k < touched_.size(); ++k) {
-            voxel_skin& skin = skins[touched_[k]];
-            surface += fresh_[k].size();
-            surface -= skin.size();
-            std::swap(skin, fresh_[k]);
-        }
-        count.surface_voxels = surface;
-        now ^= 1u;
     }
 
     static bool by_place(voxel_change const& a, voxel_change const& b) noexcept { return a.at < b.at; }
 
-    [[nodiscard]] std::uint16_t choose_bubble(vec3 const& at) const {
-        std::size_t const n = process.bubbles.stencils().size();
-        std::size_t const chosen = process.bubbles.choose(at);
-        if (chosen >= n) {
-            fail<invalid_input>(errc::index_out_of_range,
-                                "voxel_weathering.bubbles: choose() answered " + std::to_string(chosen) + " of " +
-                                    std::to_string(n) + " stencils",
-                                {.kind = entity::parameter, .value = static_cast<double>(chosen),
-                                 .limit = static_cast<double>(n)});
-        }
-        return static_cast<std::uint16_t>(chosen);
-    }
-    [[nodiscard]] double durability_at(vec3 const& at) const {
-        double const d = process.durability(at);
-        if (!(d >= -1e300 && d <= 1e300)) {
-            fail<invalid_input>(errc::bad_parameter,
-                                "voxel_weathering.durability: got " + number_text(d) + " at (" + number_text(at[0]) +
-                                    ", " + number_text(at[1]) + ", " + number_text(at[2]) + "), need a finite number",
-                                {.kind = entity::parameter, .value = d});
-        }
-        return std::max(d, Process::least_durability);
+    [[nodiscard]] auto asker() const {
+        return [this, n = stencils().size()](vec3 const& at) {
+            std::size_t const chosen = process.bubbles.choose(at);
+            if (chosen >= n) {
+                fail<invalid_input>(errc::index_out_of_range,
+                                    "voxel_weathering.bubbles: choose() answered " + std::to_string(chosen) + " of " +
+                                        std::to_string(n) + " stencils",
+                                    {.kind = entity::parameter, .value = static_cast<double>(chosen),
+                                     .limit = static_cast<double>(n)});
+            }
+            double const d = process.durability(at);
+            if (!(d >= -1e300 && d <= 1e300)) {
+                fail<invalid_input>(errc::bad_parameter,
+                                    "voxel_weathering.durability: got " + number_text(d) + " at (" + number_text(at[0]) +
+                                        ", " + number_text(at[1]) + ", " + number_text(at[2]) + "), need a finite number",
+                                    {.kind = entity::parameter, .value = d});
+            }
+            return std::pair(static_cast<std::uint16_t>(chosen), std::max(d, Process::least_durability));
+        };
     }
 
-public:
-    seconds taken{};
-
-private:
-    std::vector<std::uint32_t> slot_of_{};  ///< by brick
-    std::vector<std::uint32_t> stamp_{};
-    std::uint32_t stamp_now_ = 0;
-    int reach_ = 0;
     std::optional<rockfall> falls_{};
     bool first_fall_ = true;
-    bool copy_left_ = false;
     std::optional<sparse_grid> spare_{};  ///< the grid after the last step, where more than removal may throw
-    std::vector<std::vector<std::uint16_t>> fallers_{};  ///< by skin
+    std::vector<std::vector<brick_position>> fallers_{};  ///< by slot
     std::vector<voxel_change> changes_{};
-    std::vector<std::uint32_t> touched_{};  ///< skins to be rebuilt
-    std::vector<std::uint32_t> index_{};
-    std::vector<std::vector<std::uint16_t>> changed_{};
-    std::vector<voxel_skin> fresh_{};
+    std::vector<voxel> released_{};
+    std::vector<voxel> removed_{};
+    std::vector<fallen_block> fallen_{};
+    std::vector<std::uint64_t> born_{};  ///< by slot
+    voxel_report next_{};
 };
 
 }  // namespace tafoni::detail

@@ -4,41 +4,35 @@
 #define TAFONI_WEATHERING_DETAIL_VOXEL_SKIN_HPP
 
 #include <tafoni/voxel/detail/brick_window.hpp>
+#include <tafoni/voxel/detail/skin_view.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tafoni::detail {
 
-/// Place of a voxel in its brick: 32 column + height. Places ascend by column, then height.
-[[nodiscard]] inline std::uint16_t place_in_brick(voxel v) noexcept {
-    return static_cast<std::uint16_t>(sparse_grid::column_of(v) * 32 + static_cast<std::size_t>(v.z & 31));
-}
-[[nodiscard]] inline voxel voxel_at_place(voxel corner, std::uint16_t place) noexcept {
-    return {corner.x + (place >> 5 & 31), corner.y + (place >> 10), corner.z + (place & 31)};
-}
-
-/// Voxels of the skin of a brick, ascending by place, one array per property.
+/// Voxels of the skin of a brick, ascending by position, one array per property.
 struct voxel_skin {
-    std::vector<std::uint16_t> place{};
-    std::vector<std::uint16_t> bubble{};    ///< index of its stencil
-    std::vector<std::uint32_t> air{};       ///< in its bubble, now
+    std::vector<brick_position> position{};
+    std::vector<std::uint16_t> bubble{};  ///< index of its stencil
+    std::vector<std::uint32_t> air{};     ///< in its bubble, now
     std::vector<double> durability{};
-    /// Decimation: what is left of it, per cent. One of the two is now, the other what a step is about to make it.
+    /// Decimation: per cent that are left. `left[now]` holds; a step writes the other and turns `now`.
     std::array<std::vector<double>, 2> left{};
     /// Voxels that weathered before something came to lie on them: they go on where they stopped.
-    std::vector<std::uint16_t> covered{};
+    std::vector<brick_position> covered{};
     std::vector<double> covered_left{};
+    unsigned now = 0;
+    double clock = 0;  ///< time within the step that `left` belongs to; of events only, else 0
 
-    [[nodiscard]] std::size_t size() const noexcept { return place.size(); }
-    [[nodiscard]] bool empty() const noexcept { return place.empty() && covered.empty(); }
+    [[nodiscard]] std::size_t size() const noexcept { return position.size(); }
     void clear() noexcept {
-        place.clear();
+        position.clear();
         bubble.clear();
         air.clear();
         durability.clear();
@@ -47,18 +41,23 @@ struct voxel_skin {
         covered.clear();
         covered_left.clear();
     }
-    /// Index of a place, or size(). O(log size).
-    [[nodiscard]] std::size_t find(std::uint16_t p) const noexcept {
-        auto const it = std::lower_bound(place.begin(), place.end(), p);
-        return it != place.end() && *it == p ? static_cast<std::size_t>(it - place.begin()) : place.size();
+    [[nodiscard]] skin_view view() noexcept { return {position, bubble, air}; }
+    /// Index of a position, or size(). O(log size).
+    [[nodiscard]] std::size_t find(brick_position p) const noexcept {
+        auto const it = std::lower_bound(position.begin(), position.end(), p);
+        return it != position.end() && *it == p ? static_cast<std::size_t>(it - position.begin()) : position.size();
+    }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return position.capacity() * 2 + bubble.capacity() * 2 + air.capacity() * 4 + covered.capacity() * 2 +
+               (durability.capacity() + left[0].capacity() + left[1].capacity() + covered_left.capacity()) * 8;
     }
 };
 
-using skin_words = std::array<std::uint32_t, 1024>;
+/// Bits of a brick, a word of heights per column.
+using brick_bits = std::array<std::uint32_t, 1024>;
 
-/// Solid voxels of a brick with air within `depth` (1 or 2) steps through faces, a word of heights per column.
-/// O(32^2) words.
-inline void find_skin(sparse_grid const& grid, std::size_t brick, int depth, brick_window& window, skin_words& out) {
+/// Solid voxels of a brick with air within `depth` (1 or 2) steps through faces. O(32^2) words.
+inline void find_skin(sparse_grid const& grid, std::size_t brick, int depth, brick_window& window, brick_bits& out) {
     window.gather(grid, voxel_plane::solid, brick, depth);
     auto const near_air = [&](int x, int y) -> std::uint64_t {
         std::uint64_t const here = window.row(x, y);
@@ -74,7 +73,8 @@ inline void find_skin(sparse_grid const& grid, std::size_t brick, int depth, bri
                     near_air(x, y + 1);
             bits &= window.row(x, y);
         }
-        out[c] = static_cast<std::uint32_t>(bits >> depth) & grid.inside_word(brick, c);
+        out[c] = static_cast<std::uint32_t>(bits >> depth);
+        if (out[c] != 0) out[c] &= grid.inside_word(brick, c);
     }
 }
 
