@@ -1,6 +1,7 @@
 #include "frost_command.hpp"
 
 #include "frost_session.hpp"
+#include "option_checks.hpp"
 
 #include <tafoni/version.hpp>
 
@@ -9,22 +10,6 @@
 namespace weather {
 
 std::string version_text() { return tafoni::version_string; }
-
-namespace {
-
-/// Like CLI::Range, but not a number is out of range too.
-CLI::Validator between(double lo, double hi) {
-    std::string const range = "[" + CLI::detail::to_string(lo) + " - " + CLI::detail::to_string(hi) + "]";
-    return CLI::Validator(
-        [lo, hi, range](std::string& text) {
-            double v = 0;
-            bool const good = CLI::detail::lexical_cast(text, v) && v >= lo && v <= hi;
-            return good ? std::string() : text + " is not in " + range;
-        },
-        range);
-}
-
-}  // namespace
 
 CLI::App* add_frost_command(CLI::App& app, frost_arguments& a) {
     CLI::App* const c = app.add_subcommand("frost", "Freeze and thaw: water enters cracks, breaks bonds, blocks fall");

@@ -7,10 +7,7 @@
 #include <tafoni/decomposition/voronoi_shards.hpp>
 #include <tafoni/graph/make_link_graph.hpp>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -18,34 +15,9 @@ namespace weather {
 
 using namespace tafoni;
 
-namespace {
-
-class stopwatch {
-public:
-    /// Seconds since it was made or asked last.
-    double lap() {
-        auto const now = std::chrono::steady_clock::now();
-        double const s = std::chrono::duration<double>(now - start_).count();
-        start_ = now;
-        return s;
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-progress_style style_of(std::string const& name) {
-    if (name == "json") return progress_style::json;
-    if (name == "bar") return progress_style::bar;
-    if (name == "auto") return ::isatty(2) != 0 ? progress_style::bar : progress_style::none;
-    return progress_style::none;
-}
-
-}  // namespace
-
 frost_session::frost_session(frost_arguments const& a)
     : a_(a),
-      progress_(style_of(a.progress)),
+      progress_(progress_style_of(a.progress)),
       gravity_(parse_direction("--gravity", a.gravity)),
       up_(-gravity_),
       preset_(a.preset == "addon" ? addon_preset() : paper_preset()),

@@ -15,13 +15,6 @@ namespace weather {
 
 namespace {
 
-std::string extension_of(std::string const& path) {
-    std::size_t const dot = path.rfind('.');
-    std::string e = dot == std::string::npos ? std::string() : path.substr(dot + 1);
-    std::transform(e.begin(), e.end(), e.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    return e;
-}
-
 rock_input load_builtin(std::string const& name, std::uint64_t seed) {
     // builtin:outcrop:key=value reads as the SPEC behind the first colon.
     spec s = spec::parse("INPUT", name.substr(name.find(':') + 1));
@@ -33,6 +26,13 @@ rock_input load_builtin(std::string const& name, std::uint64_t seed) {
 }
 
 }  // namespace
+
+std::string extension_of(std::string const& path) {
+    std::size_t const dot = path.rfind('.');
+    std::string e = dot == std::string::npos ? std::string() : path.substr(dot + 1);
+    std::transform(e.begin(), e.end(), e.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    return e;
+}
 
 bool is_mesh_name(std::string const& path) {
     std::string const e = extension_of(path);
@@ -56,8 +56,7 @@ rock_input load_rock(std::string const& name, std::uint64_t seed) {
     return {.body = std::move(r.body), .repaired = {{"turned_faces", r.report.turned_faces.size()}}};
 }
 
-std::vector<tafoni::vec3> load_points(std::string const& path) {
-    if (is_mesh_name(path)) return tafoni::read_mesh(std::filesystem::path(path)).mesh.positions;
+std::vector<double> load_reals(std::string const& path) {
     std::string const bytes = load_bytes(path);
     std::vector<double> numbers;
     std::uint64_t line = 1;
@@ -79,6 +78,12 @@ std::vector<tafoni::vec3> load_points(std::string const& path) {
         numbers.push_back(v);
         at = r.ptr;
     }
+    return numbers;
+}
+
+std::vector<tafoni::vec3> load_points(std::string const& path) {
+    if (is_mesh_name(path)) return tafoni::read_mesh(std::filesystem::path(path)).mesh.positions;
+    auto const numbers = load_reals(path);
     if (numbers.empty() || numbers.size() % 3 != 0) {
         tafoni::detail::fail<tafoni::io_error>(tafoni::errc::bad_count,
                                                path + ": " + std::to_string(numbers.size()) +

@@ -23,11 +23,17 @@ rock_input load_rock(std::string const& name, std::uint64_t seed);
 /// Points of a file: the vertices of a mesh, or lines of three numbers.
 std::vector<tafoni::vec3> load_points(std::string const& path);
 
+/// Numbers of a text file, separated by white space or commas.
+std::vector<double> load_reals(std::string const& path);
+
 /// Whole numbers of a text file, separated by white space or commas.
 std::vector<std::uint64_t> load_numbers(std::string const& path);
 
 /// The bytes of a file. \throws tafoni::io_error
 std::string load_bytes(std::string const& path);
+
+/// What stands behind the last dot, in small letters.
+std::string extension_of(std::string const& path);
 
 /// True for names that end like a mesh file.
 bool is_mesh_name(std::string const& path);

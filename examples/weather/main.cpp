@@ -3,6 +3,7 @@
 #include "frost_command.hpp"
 #include "progress.hpp"
 #include "spec.hpp"
+#include "voxel_command.hpp"
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/version.hpp>
@@ -21,11 +22,13 @@ constexpr int exit_interrupted = 130;
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Weathers rock: frost wedging of a solid cut into shards."};
+    CLI::App app{"Weathers rock: frost wedges shards off, bubbles of air round edges off and hollow caverns out."};
     app.require_subcommand(1);
     app.set_version_flag("--version", weather::version_text());
     weather::frost_arguments frost;
     CLI::App* const frost_command = weather::add_frost_command(app, frost);
+    weather::voxel_arguments voxel;
+    CLI::App* const voxel_command = weather::add_voxel_command(app, voxel);
     try {
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
@@ -34,11 +37,12 @@ int main(int argc, char** argv) {
     weather::catch_interrupt();
     try {
         if (frost_command->parsed()) return weather::run_frost(frost) ? 0 : exit_interrupted;
+        if (voxel_command->parsed()) return weather::run_voxel(voxel) ? 0 : exit_interrupted;
     } catch (weather::usage_error const& e) {
         std::fprintf(stderr, "weather: %s\n", e.what());
         return exit_usage;
     } catch (tafoni::cancelled const&) {
-        std::fprintf(stderr, "weather: stopped before the first path; nothing was written\n");
+        std::fprintf(stderr, "weather: stopped before the work began; nothing was written\n");
         return exit_interrupted;
     } catch (std::exception const& e) {
         std::fprintf(stderr, "weather: %s\n", e.what());

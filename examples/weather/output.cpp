@@ -91,8 +91,8 @@ bool output_folder::writes(std::string const& format) const {
 void output_folder::write(std::string const& name, surface_mesh const& surface) const {
     auto const path = [&](char const* extension) { return folder_ / (name + extension); };
     if (writes("obj")) {
-        // OBJ has no face channels; groups by fresh or original skin would split smoothing, so none is written.
-        tafoni::write_obj(path(".obj"), surface.mesh);
+        // OBJ has no face channels; groups by fresh or original skin would split smoothing, so only materials are.
+        tafoni::write_obj(path(".obj"), surface.mesh, {.groups = surface.attributes.groups});
     }
     if (writes("ply")) tafoni::write_ply(path(".ply"), surface.mesh, surface.attributes);
     if (writes("stl")) tafoni::write_stl(path(".stl"), surface.mesh, {}, {.origin = origin_});

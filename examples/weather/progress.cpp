@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 
@@ -17,6 +19,13 @@ extern "C" void on_interrupt(int) {
 }
 
 }  // namespace
+
+progress_style progress_style_of(std::string const& name) {
+    if (name == "json") return progress_style::json;
+    if (name == "bar") return progress_style::bar;
+    if (name == "auto") return ::isatty(2) != 0 ? progress_style::bar : progress_style::none;
+    return progress_style::none;
+}
 
 void catch_interrupt() { std::signal(SIGINT, on_interrupt); }
 bool interrupted() { return interrupt_seen != 0; }

@@ -3,12 +3,30 @@
 
 #include <tafoni/core/run_context.hpp>
 
+#include <chrono>
 #include <string>
 #include <string_view>
 
 namespace weather {
 
 enum class progress_style { none, bar, json };
+
+/// Of `bar`, `json`, `none`; `auto` is a bar on a terminal.
+[[nodiscard]] progress_style progress_style_of(std::string const& name);
+
+class stopwatch {
+public:
+    /// Seconds since it was made or asked last.
+    double lap() {
+        auto const now = std::chrono::steady_clock::now();
+        double const s = std::chrono::duration<double>(now - start_).count();
+        start_ = now;
+        return s;
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// From now on Ctrl-C only sets a mark; a second one ends the program at once.
 void catch_interrupt();
