@@ -155,6 +155,7 @@
 #include <tafoni/voxel/fallen_block.hpp>
 #include <tafoni/voxel/fill_from_heights.hpp>
 #include <tafoni/voxel/fill_from_image.hpp>
+#include <tafoni/voxel/fill_from_mesh.hpp>
 #include <tafoni/voxel/fill_from_predicate.hpp>
 #include <tafoni/voxel/fill_from_samples.hpp>
 #include <tafoni/voxel/fill_from_solid.hpp>

@@ -9,6 +9,7 @@
 #include <tafoni/geometry/solid.hpp>
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 namespace tafoni {
@@ -120,13 +121,21 @@ struct self_intersections_fn {
     /// O(n log n + pairs of overlapping boxes).
     [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> operator()(solid const& s,
                                                                      run_context const& context = {}) const {
-        bvh const tree(s);
+        return (*this)(s.positions, s.triangles, context);
+    }
+
+    /// The same of any triangles, open or closed.
+    /// \throws invalid_input  as the constructor of `bvh`.
+    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> operator()(
+        std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles,
+        run_context const& context = {}) const {
+        bvh const tree(positions, triangles);
         std::vector<std::array<std::uint32_t, 2>> found;
         auto const corners = [&](std::uint32_t t) {
-            auto const& v = s.triangles[t];
-            return triangle_corners{s.positions[v[0]], s.positions[v[1]], s.positions[v[2]]};
+            auto const& v = triangles[t];
+            return triangle_corners{positions[v[0]], positions[v[1]], positions[v[2]]};
         };
-        std::size_t const n = s.triangles.size();
+        std::size_t const n = triangles.size();
         for (std::uint32_t t = 0; t < n; ++t) {
             if (t % 4096 == 0) context.tick("self_intersections", static_cast<double>(t) / static_cast<double>(n));
             triangle_corners const own = corners(t);

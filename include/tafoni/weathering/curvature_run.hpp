@@ -1,0 +1,303 @@
+/// \file
+/// Curvature weathering of a mesh: the surface that wears, and the loop over the iterations.
+#ifndef TAFONI_WEATHERING_CURVATURE_RUN_HPP
+#define TAFONI_WEATHERING_CURVATURE_RUN_HPP
+
+#include <tafoni/core/elementary.hpp>
+#include <tafoni/core/executor.hpp>
+#include <tafoni/core/run_context.hpp>
+#include <tafoni/curvature/vertex_normals.hpp>
+#include <tafoni/geometry/self_intersections.hpp>
+#include <tafoni/geometry/triangle_surface.hpp>
+#include <tafoni/repair/collapse_short_edges.hpp>
+#include <tafoni/weathering/curvature_weathering.hpp>
+#include <tafoni/weathering/detail/door_scale.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace tafoni {
+
+/// Why a run ended.
+enum class curvature_stop : std::uint8_t {
+    finished,
+    observer,           ///< an observer said stop
+    self_intersection,  ///< triangles cut each other however short the step
+    worn_away           ///< nothing is left that curvature could move
+};
+
+/// Totals since the start. Equal runs give equal reports.
+struct curvature_report {
+    std::uint64_t iterations = 0;
+    std::uint64_t edges_collapsed = 0;
+    std::uint64_t retries = 0;       ///< steps that were taken back because triangles cut each other
+    double step = 0;                 ///< share of a mean edge that a vertex moves at most, now
+    double removed_volume = 0;       ///< of the closed chain, cubed length unit; 0 for an open mesh's open part
+    curvature_stop stopped = curvature_stop::finished;  ///< of the last `run`
+};
+
+/// A surface that weathers [Skala's thesis, section 9.3]. Owns a copy of the mesh.
+///
+/// Coordinates are shifted and scaled by a power of two to about unit size at the door, so the result does not
+/// depend on the model's unit: the curvature of section 9.1 is scaled into [-1, 1] whenever it lies outside. The
+/// state depends on mesh, policies and options only, never on threads; n then m iterations equal n + m. When
+/// anything throws, the state is that after the last complete iteration.
+template <class Process = curvature_weathering<>>
+class curvature_run {
+public:
+    /// O(vertices + faces).
+    /// \throws invalid_input  for a mesh with indices or coordinates out of range, or options out of range.
+    template <triangle_mesh M>
+    explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
+        : process_((process.validate(), std::move(process))), options_((options.validate(), options)),
+          surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions) {
+        scale_.enter(surface_.positions);
+        report_.step = 1 / options_.step_divisor;
+        start_volume_ = volume();
+        new_vertex_.resize(surface_.positions.size());
+        for (std::size_t v = 0; v < new_vertex_.size(); ++v) new_vertex_[v] = vertex_index{v};
+        wear_.assign(surface_.positions.size(), 0.0);
+        input_of_ = new_vertex_;
+        if (options_.check_every > 0) safe_ = snapshot();
+    }
+
+    /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
+    /// O(vertices + faces) each, and O(n log n) for every search for cuts.
+    template <executor Executor = inline_executor>
+    curvature_report run(std::uint64_t iterations, run_context const& context = {}, Executor const& threads = {}) {
+        report_.stopped = curvature_stop::finished;
+        auto const told = [&](std::uint64_t done) {
+            if (!context.on_progress) return true;
+            double const share = iterations == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(iterations);
+            return context.on_progress({"weather", share}) == step_control::proceed;
+        };
+        std::uint64_t const end = report_.iterations + iterations;
+        std::uint64_t const begin = report_.iterations;
+        bool going = told(0);
+        if (!going) report_.stopped = curvature_stop::observer;
+        while (going && report_.iterations < end) {
+            if (!iterate(threads)) {
+                report_.stopped = curvature_stop::worn_away;
+                break;
+            }
+            bool const due = options_.check_every > 0 &&
+                             (report_.iterations % options_.check_every == 0 || report_.iterations == end);
+            if (due && !accept()) {
+                report_.stopped = curvature_stop::self_intersection;
+                break;
+            }
+            if (!told(report_.iterations - begin)) {
+                report_.stopped = curvature_stop::observer;
+                break;
+            }
+        }
+        report_.removed_volume = scale_.volume_to_user(start_volume_ - volume());
+        return report_;
+    }
+
+    // State.
+
+    /// The surface in the user's frame; vertices that never moved have the input's very coordinates. O(vertices + faces).
+    [[nodiscard]] triangle_surface surface() const {
+        triangle_surface out = surface_;
+        for (std::size_t v = 0; v < out.positions.size(); ++v) {
+            out.positions[v] = input_of_[v].valid() ? input_[input_of_[v].value] : scale_.point_to_user(out.positions[v]);
+        }
+        return out;
+    }
+    /// Vertex of the input -> vertex now; of collapsed edges both ends lead to one.
+    [[nodiscard]] std::span<vertex_index const> new_vertex() const noexcept { return new_vertex_; }
+    /// Length that each vertex has moved along its way, length unit; of a collapsed edge the longer way.
+    [[nodiscard]] std::vector<double> wear() const {
+        std::vector<double> out = wear_;
+        for (double& w : out) w = scale_.length_to_user(w);
+        return out;
+    }
+    /// Mean curvature now, 1 / length unit. O(vertices + faces).
+    template <executor Executor = inline_executor>
+    [[nodiscard]] std::vector<double> curvature(Executor const& threads = {}) {
+        refresh();
+        std::vector<double> h(surface_.positions.size());
+        process_.estimator(view(), h, threads);
+        for (double& x : h) x = scale_.curvature_to_user(x);
+        return h;
+    }
+    [[nodiscard]] curvature_report const& report() const noexcept { return report_; }
+    [[nodiscard]] Process const& process() const noexcept { return process_; }
+    [[nodiscard]] curvature_options const& options() const noexcept { return options_; }
+
+    /// From the next iteration on. \throws invalid_input  as the constructor; then nothing is replaced.
+    void replace(Process process) {
+        process.validate();
+        process_ = std::move(process);
+    }
+    void replace(curvature_options const& options) {
+        options.validate();
+        report_.step = 1 / options.step_divisor;
+        options_ = options;
+        if (options_.check_every > 0) safe_ = snapshot();
+    }
+
+private:
+    struct saved {
+        triangle_surface surface{};
+        std::vector<vertex_index> new_vertex{};
+        std::vector<double> wear{};
+        std::vector<vertex_index> input_of{};
+        std::uint64_t iterations = 0;
+        std::uint64_t edges_collapsed = 0;
+    };
+
+    [[nodiscard]] saved snapshot() const {
+        return {surface_, new_vertex_, wear_, input_of_, report_.iterations, report_.edges_collapsed};
+    }
+    [[nodiscard]] surface_view view() const noexcept {
+        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_};
+    }
+    void refresh() {
+        if (fresh_) return;
+        rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+        fresh_ = true;
+    }
+
+    /// False where no vertex moves.
+    template <executor Executor>
+    bool iterate(Executor const& threads) {
+        refresh();
+        std::size_t const n = surface_.positions.size();
+        h_.resize(n);
+        next_.resize(n);
+        moved_.resize(n);
+        process_.estimator(view(), std::span<double>(h_), threads);
+        double largest = 0;
+        for (double const h : h_) largest = std::max(largest, std::fabs(h));
+        double const shrink = largest > 1 ? 1 / largest : 1.0;
+        double const most = largest > 1 ? 1.0 : largest;
+        if constexpr (std::is_same_v<decltype(process_.direction), laplacian_direction>) {
+            // the normal is not looked at
+        } else {
+            normal_.resize(n);
+            vertex_normals(view(), normal_, threads);
+        }
+        double const reach = surface_.mean_edge_length() * report_.step;
+        double const power = options_.power;
+        threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                vec3 const p = surface_.positions[v];
+                next_[v] = p;
+                moved_[v] = 0;
+                if (!(h_[v] > 0)) continue;
+                double const h = std::min(h_[v] * shrink, 1.0);
+                auto const around = rings_.neighbors(v);
+                wear_point at{.position = scale_.point_to_user(p), .laplacian = vec3{0, 0, 0},
+                              .normal = normal_.empty() ? vec3{0, 0, 0} : normal_[v],
+                              .curvature = most > 0 ? h / most : 0.0};
+                for (std::uint32_t const w : around) at.laplacian += surface_.positions[w] - p;
+                double const share = 1 / static_cast<double>(around.size());
+                at.laplacian = vec3{at.laplacian[0] * share, at.laplacian[1] * share, at.laplacian[2] * share};
+                double const hard = std::max(process_.durability(at.position), Process::least_durability);
+                double const d = std::min((power == 1 ? h : elementary::pow(h, power)) / hard, 1.0) * reach;
+                vec3 const way = process_.direction.direction(at);
+                vec3 const step{d * way[0], d * way[1], d * way[2]};
+                next_[v] = vec3{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
+                moved_[v] = length(step);
+            }
+        });
+        bool any = false;
+        for (std::size_t v = 0; v < n; ++v) {
+            if (!is_finite(next_[v])) {
+                detail::fail<invalid_input>(errc::out_of_range, "curvature_run: the policies move vertex " + std::to_string(v) +
+                                                                    " to a place that is not finite",
+                                            {.kind = entity::vertex, .index = v});
+            }
+            any = any || moved_[v] > 0;
+        }
+        if (!any) return false;
+        std::swap(surface_.positions, next_);
+        for (std::size_t v = 0; v < n; ++v) {
+            if (!(moved_[v] > 0)) continue;
+            wear_[v] += moved_[v];
+            input_of_[v] = vertex_index{};
+        }
+        ++report_.iterations;
+        if (options_.topology == mesh_topology::adapt && options_.small_edge > 0) thin_out();
+        return true;
+    }
+
+    void thin_out() {
+        double const threshold = options_.small_edge * surface_.mean_edge_length();
+        collapse_report const gone = collapse_short_edges(surface_, threshold);
+        if (gone.collapsed == 0) return;
+        report_.edges_collapsed += gone.collapsed;
+        std::size_t const n = surface_.positions.size();
+        std::vector<double> wear(n, 0.0);
+        std::vector<vertex_index> input_of(n);
+        std::vector<unsigned char> sources(n, 0);
+        for (std::size_t v = 0; v < wear_.size(); ++v) {
+            std::size_t const to = gone.new_vertex[v].value;
+            wear[to] = std::max(wear[to], wear_[v]);
+            input_of[to] = sources[to]++ == 0 ? input_of_[v] : vertex_index{};
+            if (sources[to] > 2) sources[to] = 2;
+        }
+        wear_ = std::move(wear);
+        input_of_ = std::move(input_of);
+        for (vertex_index& v : new_vertex_) v = gone.new_vertex[v.value];
+        normal_.clear();
+        fresh_ = false;
+    }
+
+    /// Whether the surface since the last search is sound; else goes back to it and halves the step.
+    bool accept() {
+        if (self_intersections(surface_.positions, surface_.triangles).empty()) {
+            safe_ = snapshot();
+            return true;
+        }
+        surface_ = safe_.surface;
+        new_vertex_ = safe_.new_vertex;
+        wear_ = safe_.wear;
+        input_of_ = safe_.input_of;
+        report_.iterations = safe_.iterations;
+        report_.edges_collapsed = safe_.edges_collapsed;
+        fresh_ = false;
+        normal_.clear();
+        report_.step /= 2;
+        ++report_.retries;
+        return report_.step * options_.step_divisor > std::ldexp(1.0, -static_cast<int>(options_.retries) - 1) * 1.5;
+    }
+
+    /// Six times would do: the sum over the closed chain about the origin of the door's frame. O(faces).
+    [[nodiscard]] double volume() const {
+        double six = 0;
+        auto const& p = surface_.positions;
+        for (auto const& t : surface_.triangles) six += dot(p[t[0]], cross(p[t[1]], p[t[2]]));
+        return six / 6;
+    }
+
+    Process process_;
+    curvature_options options_;
+    triangle_surface surface_;
+    detail::door_scale scale_;
+    std::vector<vec3> input_;               ///< positions as given
+    vertex_rings rings_{};
+    bool fresh_ = false;
+    std::vector<double> h_{};
+    std::vector<vec3> next_{};
+    std::vector<double> moved_{};
+    std::vector<vec3> normal_{};
+    std::vector<double> wear_{};
+    std::vector<vertex_index> new_vertex_{};
+    std::vector<vertex_index> input_of_{};    ///< vertex now -> that of the input it still is, or not valid
+    curvature_report report_{};
+    double start_volume_ = 0;
+    saved safe_{};
+};
+
+}  // namespace tafoni
+
+#endif
