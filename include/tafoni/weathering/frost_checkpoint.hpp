@@ -3,37 +3,17 @@
 #ifndef TAFONI_WEATHERING_FROST_CHECKPOINT_HPP
 #define TAFONI_WEATHERING_FROST_CHECKPOINT_HPP
 
+#include <tafoni/weathering/detail/checkpoint_bytes.hpp>
 #include <tafoni/weathering/detail/frost_core.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
-#include <cstring>
 #include <span>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace tafoni::detail {
-
-/// A 64-bit hash of numbers, the same everywhere; not against malice.
-class number_hash {
-public:
-    void add(std::uint64_t v) noexcept {
-        h_ = (h_ ^ v) * 0x9E3779B97F4A7C15ULL;
-        h_ ^= h_ >> 29;
-    }
-    void add(double v) noexcept { add(std::bit_cast<std::uint64_t>(v == 0 ? 0.0 : v)); }
-    [[nodiscard]] std::uint64_t value() const noexcept {
-        std::uint64_t h = h_ * 0xBF58476D1CE4E5B9ULL;
-        return h ^ h >> 32;
-    }
-
-private:
-    std::uint64_t h_ = 0x7461666F6E690001ULL;
-};
 
 /// Cells, links and geometry that a state belongs to. O(links).
 template <class Network>
@@ -47,26 +27,6 @@ template <class Network>
         h.add(std::uint64_t{r.cells[0].value} << 32 | r.cells[1].value);
     }
     return h.value();
-}
-
-/// What tells two policies apart without help of the compiler's names, which differ between compilers.
-/// An empty policy has a size of 1 and no bytes that say anything.
-template <class Policy>
-void add_policy(number_hash& h, Policy const& policy) {
-    if constexpr (requires { policy.parameters(); }) {
-        for (double const v : policy.parameters()) h.add(v);
-    } else if constexpr (std::is_trivially_copyable_v<Policy> && std::has_unique_object_representations_v<Policy> &&
-                         !std::is_empty_v<Policy>) {
-        for (auto const byte : std::bit_cast<std::array<unsigned char, sizeof(Policy)>>(policy)) {
-            h.add(std::uint64_t{byte});
-        }
-    }
-    if constexpr (requires { std::string_view(Policy::name); }) {
-        for (char const c : std::string_view(Policy::name)) h.add(std::uint64_t{static_cast<unsigned char>(c)});
-    } else {
-        h.add(std::uint64_t{sizeof(Policy)});
-    }
-    h.add(std::uint64_t{0x5EA});
 }
 
 /// Options, all policies, the exposure, and the resistance as read. O(links).
@@ -84,59 +44,8 @@ template <class Network, class Process, class Exposure>
     return h.value();
 }
 
-/// Little-endian bytes, whatever the machine.
-class byte_writer {
-public:
-    void put(std::uint64_t v, int bytes = 8) {
-        for (int k = 0; k < bytes; ++k) bytes_.push_back(static_cast<std::byte>(v >> (8 * k) & 0xFF));
-    }
-    void put(wide_int v) {
-        put(static_cast<std::uint64_t>(v));
-        put(static_cast<std::uint64_t>(v >> 64));
-    }
-    void reserve(std::size_t n) { bytes_.reserve(n); }
-    [[nodiscard]] std::vector<std::byte>& bytes() noexcept { return bytes_; }
-
-private:
-    std::vector<std::byte> bytes_{};
-};
-
-class byte_reader {
-public:
-    explicit byte_reader(std::span<std::byte const> bytes) noexcept : bytes_(bytes) {}
-    [[nodiscard]] std::uint64_t get(std::size_t bytes = 8) {
-        if (bytes_.size() - at_ < bytes) fail<io_error>(errc::truncated, "frost_run::resume: the checkpoint ends early");
-        std::uint64_t v = 0;
-        for (std::size_t k = 0; k < bytes; ++k) v |= std::to_integer<std::uint64_t>(bytes_[at_ + k]) << (8 * k);
-        at_ += bytes;
-        return v;
-    }
-    [[nodiscard]] wide_int get_wide() {
-        std::uint64_t const low = get();
-        auto const high = static_cast<std::int64_t>(get());
-        return wide_int{high} * (wide_int{1} << 64) + static_cast<wide_int>(low);
-    }
-    [[nodiscard]] std::size_t left() const noexcept { return bytes_.size() - at_; }
-
-private:
-    std::span<std::byte const> bytes_;
-    std::size_t at_ = 0;
-};
-
 inline constexpr std::uint64_t checkpoint_magic = 0x6F72662D66617400ULL;  // "\0taf-fro"
 inline constexpr std::uint64_t checkpoint_version = 1;
-
-[[nodiscard]] inline std::uint64_t byte_hash(std::span<std::byte const> bytes) noexcept {
-    number_hash h;
-    std::size_t k = 0;
-    for (; k + 8 <= bytes.size(); k += 8) {
-        std::uint64_t v = 0;
-        for (std::size_t j = 0; j < 8; ++j) v |= std::to_integer<std::uint64_t>(bytes[k + j]) << (8 * j);
-        h.add(v);
-    }
-    for (; k < bytes.size(); ++k) h.add(std::to_integer<std::uint64_t>(bytes[k]));
-    return h.value();
-}
 
 /// Magic, version, hash of the network, hash of the parameters, counters, cells, marks, link states, lives,
 /// blocks, hash.
@@ -177,7 +86,7 @@ void read_checkpoint(frost_core<Network, Process, Exposure>& core, std::span<std
     auto const bad = [](char const* why) {
         fail<io_error>(errc::bad_syntax, std::string("frost_run::resume: ") + why);
     };
-    byte_reader in(bytes);
+    byte_reader in(bytes, "frost_run::resume");
     if (bytes.size() < 8 || in.get() != checkpoint_magic) {
         fail<io_error>(errc::wrong_format, "frost_run::resume: these bytes are no frost checkpoint");
     }

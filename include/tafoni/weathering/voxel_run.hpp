@@ -4,6 +4,7 @@
 #define TAFONI_WEATHERING_VOXEL_RUN_HPP
 
 #include <tafoni/core/executor.hpp>
+#include <tafoni/weathering/detail/voxel_checkpoint.hpp>
 #include <tafoni/weathering/detail/voxel_core.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 #include <tafoni/weathering/voxel_report.hpp>
@@ -189,6 +190,19 @@ public:
             core_.options = std::move(former);
             throw;
         }
+    }
+
+    /// The state as bytes, the same on every machine. O(bricks + skin + voxels that fell).
+    [[nodiscard]] std::vector<std::byte> checkpoint() const { return detail::write_checkpoint(core_); }
+    /// Goes on from bytes of `checkpoint()`; further steps give the bits of the uninterrupted run. Strong guarantee.
+    /// The predicate of `rockfall_options::ground_where` is not compared.
+    /// \throws io_error  `wrong_format`, `unsupported`, `truncated`, `bad_syntax`; `checkpoint_mismatch` for another
+    ///                   input grid, other options, bubbles, rates or durability.
+    void resume(std::span<std::byte const> bytes) {
+        detail::read_checkpoint(core_, bytes);
+        seconds_ = 0;
+        core_.taken = {};
+        stopped_ = voxel_stop::finished;
     }
 
     /// Writes the states into any grid of the same size, in the user's axes. O(voxels).

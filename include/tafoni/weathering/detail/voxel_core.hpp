@@ -6,6 +6,7 @@
 #include <tafoni/core/executor.hpp>
 #include <tafoni/voxel/colluvium.hpp>
 #include <tafoni/voxel/rockfall.hpp>
+#include <tafoni/weathering/detail/grid_hash.hpp>
 #include <tafoni/weathering/detail/voxel_rates.hpp>
 #include <tafoni/weathering/detail/voxel_skins.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
@@ -52,6 +53,7 @@ public:
         rates.read(process, options.measure);
         start_rockfall();
         rescan(threads);
+        first_grid = grid_hash(grid);
     }
 
     sparse_grid grid;
@@ -61,6 +63,7 @@ public:
     std::vector<fallen_block> blocks{};
     voxel_rates rates{};
     voxel_skins skins{};
+    std::uint64_t first_grid = 0;  ///< hash of the input
     double time = 0;  ///< within a step that was left after an event by a throw; else 0
 
     /// Asks for bubble and durability again, and counts. Decimation stays. Strong guarantee. O(bricks + skin bubbles).
@@ -70,6 +73,27 @@ public:
         skins.rebuild(grid, stencils(), options.skin_depth, asker(), voxel_skins::basis::replaced, threads);
         skins.commit();
         count.surface_voxels = skins.voxel_count();
+    }
+    /// The skin of another grid under the same process. O(bricks + skin bubbles).
+    [[nodiscard]] voxel_skins skin_of(sparse_grid const& other) const {
+        voxel_skins out;
+        out.reset(other.brick_count());
+        out.touch_all(other);
+        out.rebuild(other, stencils(), options.skin_depth, asker(), voxel_skins::basis::replaced, inline_executor{});
+        out.commit();
+        return out;
+    }
+    /// Nothing here throws.
+    void resume(sparse_grid&& now, voxel_skins&& skin, std::vector<fallen_block>&& fallen, voxel_report const& totals,
+                double within) noexcept {
+        grid = std::move(now);
+        skins = std::move(skin);
+        for (std::size_t s = 0; s < skins.size(); ++s) skins[s].clock = within;
+        blocks = std::move(fallen);
+        count = totals;
+        time = within;
+        spare_.reset();
+        start_rockfall();
     }
     void start_rockfall() {
         falls_.reset();

@@ -57,7 +57,8 @@ public:
     [[nodiscard]] double cavernous(std::size_t bubble, std::uint32_t air) const noexcept {
         return cavernous_[first_[bubble] + air];
     }
-    [[nodiscard]] std::span<double const> table() const noexcept { return spheroidal_; }
+    [[nodiscard]] std::span<double const> spheroidal_table() const noexcept { return spheroidal_; }
+    [[nodiscard]] std::span<double const> cavernous_table() const noexcept { return cavernous_; }
 
 private:
     static double positive(double x) noexcept { return x > 0 ? x : 0; }

@@ -48,6 +48,16 @@ public:
     [[nodiscard]] std::size_t brick(std::size_t slot) const noexcept { return bricks_[slot]; }
     [[nodiscard]] std::uint32_t slot_of(std::size_t brick) const noexcept { return slot_of_[brick]; }
     [[nodiscard]] std::span<std::uint32_t const> touched() const noexcept { return touched_; }
+    /// Makes a slot where there is none.
+    [[nodiscard]] voxel_skin& of_brick(std::size_t b) {
+        if (slot_of_[b] == none) {
+            bricks_.resize(skins_.size());  // one more where an allocation failed before
+            bricks_.push_back(b);
+            skins_.emplace_back();
+            slot_of_[b] = static_cast<std::uint32_t>(skins_.size() - 1);
+        }
+        return skins_[slot_of_[b]];
+    }
     [[nodiscard]] std::size_t voxel_count() const noexcept {
         std::size_t n = 0;
         for (voxel_skin const& s : skins_) n += s.size();
@@ -164,12 +174,7 @@ private:
     /// Index of the brick among the touched.
     void touch(std::size_t b) {
         if (stamp_[b] == stamp_now_) return;
-        if (slot_of_[b] == none) {
-            bricks_.resize(skins_.size());  // one more where an allocation failed before
-            bricks_.push_back(b);
-            skins_.emplace_back();
-            slot_of_[b] = static_cast<std::uint32_t>(skins_.size() - 1);
-        }
+        (void)of_brick(b);
         touched_.push_back(slot_of_[b]);
         stamp_[b] = stamp_now_;
     }
