@@ -251,7 +251,7 @@ TEST_CASE("grains settle in parallel exactly as one after the other", "[colluviu
         outcome const b = run(many, s.released, s.opened, rule, 1, 1, backwards{});
         CHECK(a.report.moved > 500);
         CHECK(a.report == b.report);
-        CHECK(a.changes == b.changes);
+        CHECK((a.changes == b.changes));
         CHECK(same_voxels(one, many));
         CHECK(restless(many, rule) == 0);
     }
@@ -263,7 +263,7 @@ TEST_CASE("grains settle in parallel exactly as one after the other", "[colluviu
         outcome const a = run(s.grid, s.released, s.opened, rule);
         outcome const b = run(many, s.released, s.opened, rule, 1, 1, backwards{});
         CHECK(a.report == b.report);
-        CHECK(a.changes == b.changes);
+        CHECK((a.changes == b.changes));
     }
 }
 
@@ -278,7 +278,7 @@ TEST_CASE("every number of threads lays the grains into the same voxels", "[coll
         o.report = settle(g, s.released, s.opened, repose_rule{}, 1, 1, pool, o.changes);
         CAPTURE(threads);
         CHECK(o.report == a.report);
-        CHECK(o.changes == a.changes);
+        CHECK((o.changes == a.changes));
         CHECK(same_voxels(g, one));
     }
 }

@@ -4,6 +4,7 @@
 #define TAFONI_VOXEL_DETAIL_GRAIN_SLIDE_HPP
 
 #include <tafoni/core/elementary.hpp>
+#include <tafoni/voxel/detail/voxel_sort.hpp>
 #include <tafoni/voxel/repose_rule.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
 
@@ -16,17 +17,6 @@
 #include <limits>
 
 namespace tafoni::detail {
-
-/// A voxel of a grid as one number; ordered like voxels.
-[[nodiscard]] constexpr std::uint64_t voxel_key(voxel v) noexcept {
-    return static_cast<std::uint64_t>(v.z) << 40 | static_cast<std::uint64_t>(v.y) << 20 |
-           static_cast<std::uint64_t>(v.x);
-}
-[[nodiscard]] constexpr voxel voxel_of_key(std::uint64_t k) noexcept {
-    constexpr std::uint64_t mask = (std::uint64_t{1} << 20) - 1;
-    return {static_cast<std::int32_t>(k & mask), static_cast<std::int32_t>(k >> 20 & mask),
-            static_cast<std::int32_t>(k >> 40)};
-}
 
 /// A bijection that scatters 64 bits [Stafford 2011, mix 13].
 [[nodiscard]] constexpr std::uint64_t scatter(std::uint64_t h) noexcept {
@@ -97,8 +87,18 @@ public:
     /// From a place where it stands: to the steepest side, to the first column there that is deeper, and down in
     /// it; rests where no side is too steep. Every move lowers the grain by a voxel at least, for it ends in a
     /// column with a drop of 2 or more: so a grain makes fewer moves than the grid is high. O(4 L) columns.
-    [[nodiscard]] step slide(voxel& p, std::uint64_t grain) const noexcept {
-        return baseline_ == 1 ? slide_one(p, grain) : slide_far(p, grain);
+    ///
+    /// `wary` tells whether a deposit in any column within a baseline can change the answer. With a baseline of
+    /// one and a single steepest side it cannot, but in the column that the grain goes to: deposits make others
+    /// less steep only.
+    [[nodiscard]] step slide(voxel& p, std::uint64_t grain, bool& wary) const noexcept {
+        return baseline_ == 1 ? slide_one(p, grain, wary) : slide_far(p, grain, wary);
+    }
+
+    /// Whether a grain that lies at p would move. O(4 L) columns.
+    [[nodiscard]] bool restless(voxel p) const noexcept {
+        bool wary = false;
+        return fall(p) != step::rests || slide(p, 0, wary) != step::rests;
     }
 
 private:
@@ -112,7 +112,8 @@ private:
     }
 
     /// A baseline of one column: nearly always the four columns are in one brick and end in one word.
-    [[nodiscard]] step slide_one(voxel& p, std::uint64_t grain) const noexcept {
+    [[nodiscard]] step slide_one(voxel& p, std::uint64_t grain, bool& wary) const noexcept {
+        wary = false;
         std::array<std::int32_t, 4> n{};
         std::int32_t const in_x = p.x & 31;
         std::int32_t const in_y = p.y & 31;
@@ -141,6 +142,7 @@ private:
         for (std::uint8_t d = 0; d < 4; ++d) {
             if (d < 2 ? n[d] == x_most && x_slope >= y_slope : n[d] == y_most && y_slope >= x_slope) tied[ties++] = d;
         }
+        wary = ties > 1;
         std::size_t const d = tied[choose(grain, p, ties)];
         voxel const to{p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z - (n[d] - 1)};
         if (n[d] == sparse_grid::bottomless || to.x < 0 || to.y < 0 || to.x >= nx_ || to.y >= ny_) return step::leaves;
@@ -148,7 +150,8 @@ private:
         return step::moves;
     }
 
-    [[nodiscard]] step slide_far(voxel& p, std::uint64_t grain) const noexcept {
+    [[nodiscard]] step slide_far(voxel& p, std::uint64_t grain, bool& wary) const noexcept {
+        wary = true;
         std::array<side, 4> best{};
         double steepest = 0;
         std::uint32_t ties = 0;

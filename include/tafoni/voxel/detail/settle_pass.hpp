@@ -83,18 +83,15 @@ public:
 
     template <class Executor>
     void resettle(std::span<voxel const> opened, Executor const& executor, std::size_t& moved, std::size_t& left) {
-        std::vector<voxel> wave = collected(opened, executor, [this](voxel v, std::vector<voxel>& out) {
+        std::vector<voxel> wave = collected(opened, executor, [this](voxel v, std::vector<std::uint64_t>& out) {
             voxel_state const s = grid_.state(v);
-            if (s == voxel_state::colluvium) out.push_back(v);
+            if (s == voxel_state::colluvium && slide_.restless(v)) out.push_back(voxel_key(v));
             if (s == voxel_state::air) unsettled_by(v, out);
         });
         std::vector<voxel> lifted;
         while (!wave.empty()) {
-            std::sort(wave.begin(), wave.end());
-            wave.erase(std::unique(wave.begin(), wave.end()), wave.end());
             lifted.clear();
             in_order(std::span<voxel const>(wave), executor, [&](voxel v, auto const& way) {
-                if (grid_.state(v) != voxel_state::colluvium) return;
                 voxel p{};
                 bool const stays = way(p);
                 if (stays && p == v) return;
@@ -107,15 +104,18 @@ public:
                     ++left;
                 }
             });
-            wave = collected(std::span<voxel const>(lifted), executor, [this](voxel v, std::vector<voxel>& out) {
-                if (!grid_.is_solid(v)) unsettled_by(v, out);
-            });
+            wave = collected(std::span<voxel const>(lifted), executor,
+                             [this](voxel v, std::vector<std::uint64_t>& out) {
+                                 voxel_state const s = grid_.state(v);
+                                 if (s == voxel_state::colluvium && slide_.restless(v)) out.push_back(voxel_key(v));
+                                 if (s == voxel_state::air) unsettled_by(v, out);
+                             });
         }
     }
 
     /// Every put turned air to colluvium or back: those put an odd number of times have changed.
     void net_changes(std::vector<voxel_change>& changes) {
-        std::sort(puts_.begin(), puts_.end());
+        sort_keys(puts_);
         for (std::size_t i = 0; i < puts_.size();) {
             std::size_t end = i + 1;
             while (end < puts_.size() && puts_[end] == puts_[i]) ++end;
@@ -129,9 +129,18 @@ public:
     }
 
 private:
-    static constexpr std::size_t round_size = 1024;  ///< grains whose ways are found over one state of the grid
-    static constexpr std::size_t block_size = 32;    ///< grains of a round that one thread takes at once
+    static constexpr std::size_t round_size = 2048;  ///< grains whose ways are found over one state of the grid
+    static constexpr std::size_t block_size = 64;    ///< grains of a round that one thread takes at once
     static constexpr std::size_t most_tiles = std::size_t{1} << 20;
+
+    static constexpr std::uint64_t wary_bit = std::uint64_t{1} << 63;
+
+    /// The last rounds in which something changed.
+    struct touch {
+        std::uint32_t here = 0;    ///< in one of these columns
+        std::uint32_t beside = 0;  ///< in a column that can be seen from one of them, or in one of them
+        std::uint32_t lifted = 0;  ///< the same, but only what turned to air
+    };
 
     /// The ways of a block of grains: where each begins and where it stands between its moves.
     struct block_ways {
@@ -157,7 +166,7 @@ private:
             auto const tiles = [this](std::size_t axis) { return (grid_.size()[axis] >> tile_bits_) + 1; };
             while (tiles(0) * tiles(1) > most_tiles) ++tile_bits_;
             tiles_x_ = tiles(0);
-            touched_.assign(tiles(0) * tiles(1), 0);
+            touched_.assign(tiles(0) * tiles(1), {});
             ways_.resize(round_size / block_size);
         }
         for (std::size_t begin = 0; begin < starts.size(); begin += round_size) {
@@ -177,8 +186,8 @@ private:
     [[nodiscard]] bool follow(voxel& p, voxel start) const noexcept {
         if (slide_.fall(p) == grain_slide::step::leaves) return false;
         std::uint64_t const key = slide_.grain_key(start);
-        for (;;) {
-            grain_slide::step const s = slide_.slide(p, key);
+        for (bool wary = false;;) {
+            grain_slide::step const s = slide_.slide(p, key, wary);
             if (s != grain_slide::step::moves) return s == grain_slide::step::rests;
         }
     }
@@ -191,9 +200,13 @@ private:
             std::uint64_t const key = slide_.grain_key(v);
             out.keys.push_back(voxel_key(p));
             grain_slide::step s = slide_.fall(p);
-            if (s != grain_slide::step::leaves) {
-                if (s == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
-                while ((s = slide_.slide(p, key)) == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
+            if (s == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
+            while (s != grain_slide::step::leaves) {
+                bool wary = false;
+                s = slide_.slide(p, key, wary);
+                if (wary) out.keys.back() |= wary_bit;
+                if (s != grain_slide::step::moves) break;
+                out.keys.push_back(voxel_key(p));
             }
             out.ends.push_back({out.keys.size(), p, s == grain_slide::step::leaves});
         }
@@ -205,8 +218,8 @@ private:
         std::size_t const end = ways.ends[j].keys;
         std::uint64_t const key = slide_.grain_key(start);
         bool first = true;
-        for (;;) {
-            while (k < end && touched_[tile_of(voxel_of_key(ways.keys[k]))] != round_) {
+        for (bool wary = false;;) {
+            while (k < end && holds(ways.keys[k], k + 1 < end ? ways.keys[k + 1] : ways.keys[k])) {
                 ++k;
                 first = false;
             }
@@ -220,30 +233,41 @@ private:
             // A way that comes to where the old one stood goes on as that did.
             for (++k;;) {
                 while (k < end && voxel_of_key(ways.keys[k]).z > p.z) ++k;
-                if (k < end && ways.keys[k] == voxel_key(p)) break;
-                grain_slide::step const s = slide_.slide(p, key);
+                if (k < end && (ways.keys[k] & ~wary_bit) == voxel_key(p)) break;
+                grain_slide::step const s = slide_.slide(p, key, wary);
                 if (s != grain_slide::step::moves) return s == grain_slide::step::rests;
             }
         }
     }
 
-    /// find(voxel, found) for every voxel, one after the other or in parallel; what was found, in order.
+    /// find(voxel, found keys) for every voxel, one after the other or in parallel; what was found, once, in order.
     template <class Executor, class Find>
     [[nodiscard]] static std::vector<voxel> collected(std::span<voxel const> voxels, Executor const& executor, Find const& find) {
-        std::vector<voxel> out;
+        std::vector<std::uint64_t> found;
         std::size_t const grain = 16 * block_size;
         if (executor.thread_count() < 2 || voxels.size() < 2 * grain) {
-            for (voxel const v : voxels) find(v, out);
-            return out;
+            for (voxel const v : voxels) find(v, found);
+        } else {
+            std::vector<std::vector<std::uint64_t>> parts((voxels.size() + grain - 1) / grain);
+            executor.for_blocks(voxels.size(), grain, [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i) find(voxels[i], parts[first / grain]);
+            });
+            for (auto const& part : parts) found.insert(found.end(), part.begin(), part.end());
         }
-        std::vector<std::vector<voxel>> parts((voxels.size() + grain - 1) / grain);
-        executor.for_blocks(voxels.size(), grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) find(voxels[i], parts[first / grain]);
-        });
-        for (auto const& part : parts) out.insert(out.end(), part.begin(), part.end());
+        sort_keys(found);
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        std::vector<voxel> out;
+        out.reserve(found.size());
+        for (std::uint64_t const k : found) out.push_back(voxel_of_key(k));
         return out;
     }
 
+    /// Whether no change of this round can matter to a grain's move from a place to the next.
+    [[nodiscard]] bool holds(std::uint64_t from, std::uint64_t to) const noexcept {
+        touch const& t = touched_[tile_of(voxel_of_key(from))];
+        return t.lifted != round_ && ((from & wary_bit) == 0 || t.beside != round_) &&
+               touched_[tile_of(voxel_of_key(to))].here != round_;
+    }
     [[nodiscard]] std::size_t tile_of(voxel v) const noexcept {
         return static_cast<std::size_t>(v.x >> tile_bits_) + tiles_x_ * static_cast<std::size_t>(v.y >> tile_bits_);
     }
@@ -252,23 +276,26 @@ private:
         grid_.set(v, s);
         puts_.push_back(voxel_key(v));
         if (touched_.empty()) return;
+        touched_[tile_of(v)].here = round_;
         // Whoever stands up to a baseline away along an axis has looked at this column.
         std::int32_t const reach = slide_.baseline();
         for (std::int32_t k = -reach; k <= reach; ++k) {
-            voxel const x{v.x + k, v.y, v.z};
-            voxel const y{v.x, v.y + k, v.z};
-            if (grid_.contains(x)) touched_[tile_of(x)] = round_;
-            if (grid_.contains(y)) touched_[tile_of(y)] = round_;
+            for (voxel const c : {voxel{v.x + k, v.y, v.z}, voxel{v.x, v.y + k, v.z}}) {
+                if (!grid_.contains(c)) continue;
+                touch& t = touched_[tile_of(c)];
+                t.beside = round_;
+                if (s == voxel_state::air) t.lifted = round_;
+            }
         }
     }
 
     /// Colluvium that may have stood because `v` was not air: the voxel above it, and what looks into or
     /// past the air around it, from v's height up to the next ceiling above v.
-    void unsettled_by(voxel v, std::vector<voxel>& out) const {
+    void unsettled_by(voxel v, std::vector<std::uint64_t>& out) const {
         auto const nz = static_cast<std::int32_t>(grid_.size()[2]);
         std::int32_t const ceiling = first_solid(v);
         if (ceiling == v.z + 1 && ceiling < nz && grid_.state({v.x, v.y, ceiling}) == voxel_state::colluvium) {
-            out.push_back({v.x, v.y, ceiling});
+            out.push_back(voxel_key({v.x, v.y, ceiling}));
         }
         for (std::int32_t k = 1; k <= slide_.baseline(); ++k) {
             for (voxel const c : {voxel{v.x - k, v.y, v.z}, voxel{v.x + k, v.y, v.z}, voxel{v.x, v.y - k, v.z},
@@ -289,13 +316,13 @@ private:
         return nz;
     }
 
-    void grains_between(voxel from, std::int32_t end, std::vector<voxel>& out) const {
+    void grains_between(voxel from, std::int32_t end, std::vector<std::uint64_t>& out) const {
         std::size_t const column = sparse_grid::column_of(from);
         for (std::int32_t z = from.z; z < end; z = (z | 31) + 1) {
             std::uint32_t word = grid_.colluvium_word(grid_.brick_of({from.x, from.y, z}), column) >> (z & 31);
             for (; word != 0; word &= word - 1) {
-                std::int32_t const at = z + std::countr_zero(word);
-                if (at < end) out.push_back({from.x, from.y, at});
+                voxel const v{from.x, from.y, z + std::countr_zero(word)};
+                if (v.z < end && slide_.restless(v)) out.push_back(voxel_key(v));
             }
         }
     }
@@ -304,7 +331,7 @@ private:
     grain_slide slide_;
     std::vector<std::uint64_t> puts_{};
     std::vector<block_ways> ways_{};
-    std::vector<std::uint32_t> touched_{};  ///< per tile the last round in which something near it changed
+    std::vector<touch> touched_{};  ///< per tile
     std::size_t tiles_x_ = 0;
     int tile_bits_ = 0;  ///< a tile is a square of 2^bits columns; single ones unless the grid is very wide
     std::uint32_t round_ = 0;
