@@ -1,0 +1,232 @@
+/// \file
+/// How much of the winding number of a closed surface is due to the caps of its holes.
+#ifndef TAFONI_VOXEL_DETAIL_HOLE_LEVELS_HPP
+#define TAFONI_VOXEL_DETAIL_HOLE_LEVELS_HPP
+
+#include <tafoni/core/elementary.hpp>
+#include <tafoni/core/vector.hpp>
+#include <tafoni/voxel/detail/row_crossings.hpp>
+#include <tafoni/voxel/voxel.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// For every voxel the winding number of the capped surface from which on the generalised winding number of
+/// the open one [Jacobson et al. 2013] is 1/2 or more.
+///
+/// The open surface is the capped one less its caps, so its number is a whole one, known from rows, less the
+/// share S of the full sphere that the caps take up. S is smooth off the caps, and its gradient is
+/// at most sum(length / distance^2) / 4 pi over the edges of the holes (Biot and Savart's law): where that
+/// bound keeps S within one level all over a block, one evaluation decides the block. Others are halved, down to
+/// single voxels. Asked as `fill_bricks` does.
+class hole_levels {
+public:
+    /// A triangle of a cap: the apex of its hole, and an edge of the hole, as indices of `corners`.
+    using cap = std::array<std::uint32_t, 3>;
+
+    /// `size`: voxels along the turned axes; `spacing`: as the frame's.
+    hole_levels(row_crossings const& rows, std::array<std::size_t, 3> const& size, vec3 const& spacing,
+                std::vector<row_crossings::corner> corners, std::vector<cap> caps)
+        : rows_(rows), size_(size), corners_(std::move(corners)), caps_(std::move(caps)) {
+        double const largest = std::max({spacing[0], spacing[1], spacing[2]});
+        for (std::size_t d = 0; d < 3; ++d) {
+            scale_[d] = spacing[static_cast<Eigen::Index>(rows.axes().axis[d])] / largest;
+        }
+        places_.reserve(corners_.size());
+        for (auto const& c : corners_) places_.push_back(place_of(c.x, static_cast<double>(c.y), static_cast<double>(c.z)));
+        for (cap const& t : caps_) {
+            vec3 const& a = places_[t[0]];
+            vec3 const& b = places_[t[1]];
+            vec3 const& c = places_[t[2]];
+            shape s;
+            s.normal = cross(b - a, c - a);
+            s.double_area = length(s.normal);
+            s.centre = vec3((a + b + c) / 3.0);
+            s.radius = std::sqrt(std::max({squared_length(a - s.centre), squared_length(b - s.centre), squared_length(c - s.centre)}));
+            s.edge = length(c - b);
+            shapes_.push_back(s);
+        }
+        offsets_.resize(places_.size());
+        lengths_.resize(places_.size());
+    }
+
+    [[nodiscard]] bool is_uniform(voxel low) {
+        if (caps_.empty()) return true;
+        low_ = low;
+        if (decided(low, 32)) return true;
+        levels_.resize(32768);
+        split(low, 32);
+        return false;
+    }
+    [[nodiscard]] int uniform() const noexcept { return level_; }
+    [[nodiscard]] int operator()(std::size_t column, std::size_t z) const noexcept { return levels_[32 * column + z]; }
+
+private:
+    static constexpr double pi = 0x1.921fb54442d18p+1;
+    static constexpr double one = static_cast<double>(row_crossings::one);
+    static constexpr double tie = 0x1p-30;   ///< of a winding number: 1/2 less this is 1/2
+    static constexpr double thin = 0x1p-30;  ///< of a voxel: nearer to a cap than this, the row says on which side
+
+    struct shape {
+        vec3 normal;  ///< not of unit length
+        double double_area;
+        vec3 centre;
+        double radius;
+        double edge;  ///< length of the hole's edge
+    };
+
+    /// From voxels along the row and 1 / one across to the unit of the largest spacing.
+    [[nodiscard]] vec3 place_of(double x, double y, double z) const noexcept {
+        return vec3{x * scale_[0], y / one * scale_[1], z / one * scale_[2]};
+    }
+    /// A voxel of the turned grid as the rows number it.
+    [[nodiscard]] std::array<std::int64_t, 3> in_rows(voxel v) const noexcept {
+        std::array<std::int64_t, 3> r{v.z, v.x, v.y};
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (rows_.axes().mirrored[d]) r[d] = rows_.size()[d] - 1 - r[d];
+        }
+        return r;
+    }
+    [[nodiscard]] vec3 centre_of(std::array<std::int64_t, 3> const& v) const noexcept {
+        return place_of(static_cast<double>(v[0]) + 0.5, static_cast<double>(row_crossings::line(v[1])),
+                        static_cast<double>(row_crossings::line(v[2])));
+    }
+    [[nodiscard]] static int level_of(double share) noexcept { return static_cast<int>(std::ceil(share + (0.5 - tie))); }
+
+    void split(voxel low, std::int32_t edge) {
+        if (edge == 1) {
+            auto const at = in_rows(low);
+            set(low, 1, level_of(share(centre_of(at), &at)));
+            return;
+        }
+        std::int32_t const half = edge / 2;
+        for (std::int32_t child = 0; child < 8; ++child) {
+            voxel const at{low.x + half * (child & 1), low.y + half * (child >> 1 & 1), low.z + half * (child >> 2)};
+            if (static_cast<std::size_t>(at.x) >= size_[0] || static_cast<std::size_t>(at.y) >= size_[1] ||
+                static_cast<std::size_t>(at.z) >= size_[2]) {
+                continue;
+            }
+            if (half > 1 && decided(at, half)) {
+                set(at, half, level_);
+            } else {
+                split(at, half);
+            }
+        }
+    }
+    void set(voxel low, std::int32_t edge, int level) {
+        auto const x = static_cast<std::size_t>(low.x - low_.x);
+        auto const y = static_cast<std::size_t>(low.y - low_.y);
+        auto const z = static_cast<std::size_t>(low.z - low_.z);
+        auto const n = static_cast<std::size_t>(edge);
+        for (std::size_t v = 0; v < n; ++v) {
+            for (std::size_t u = 0; u < n; ++u) std::fill_n(&levels_[32 * (x + u + 32 * (y + v)) + z], n, level);
+        }
+    }
+
+    /// Whether one level holds for all voxels of a block; `level_` is it then. O(edges of holes).
+    bool decided(voxel low, std::int32_t edge) {
+        voxel const high{std::min(low.x + edge, static_cast<std::int32_t>(size_[0])) - 1,
+                         std::min(low.y + edge, static_cast<std::int32_t>(size_[1])) - 1,
+                         std::min(low.z + edge, static_cast<std::int32_t>(size_[2])) - 1};
+        vec3 const a = centre_of(in_rows(low));
+        vec3 const b = centre_of(in_rows(high));
+        vec3 const centre = vec3(0.5 * (a + b));
+        double const radius = 0.5 * length(b - a) + 0x1p-20;
+        double slope = 0;
+        for (std::size_t t = 0; t < caps_.size(); ++t) {
+            shape const& s = shapes_[t];
+            double const off_plane = std::fabs(dot(s.normal, centre - s.centre));
+            if (off_plane <= radius * s.double_area && length(centre - s.centre) <= radius + s.radius) return false;
+            double const distance = segment_distance(centre, places_[caps_[t][1]], places_[caps_[t][2]]) - radius;
+            if (!(distance > 0)) return false;
+            slope += s.edge / (distance * distance);
+            // Below half a turn on either side, or no level can hold.
+            if (slope * radius > 2 * pi) return false;
+        }
+        double const change = slope * radius / (4 * pi) * 1.001 + 0x1p-36;
+        double const here = share(centre, nullptr);
+        level_ = level_of(here - change);
+        return level_ == level_of(here + change);
+    }
+    [[nodiscard]] static double segment_distance(vec3 const& p, vec3 const& a, vec3 const& b) noexcept {
+        vec3 const along = b - a;
+        double const square = squared_length(along);
+        double const t = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0.0;
+        return length(p - a - t * along);
+    }
+
+    /// Solid angle of all caps over that of the sphere, positive from behind them. `at`: the voxel whose centre
+    /// `p` is, if it is one. O(edges of holes).
+    double share(vec3 const& p, std::array<std::int64_t, 3> const* at) {
+        for (std::size_t v = 0; v < places_.size(); ++v) {
+            offsets_[v] = places_[v] - p;
+            lengths_[v] = length(offsets_[v]);
+        }
+        double halves = 0;
+        for (std::size_t t = 0; t < caps_.size(); ++t) {
+            auto const [i, j, k] = caps_[t];
+            vec3 const& a = offsets_[i];
+            vec3 const& b = offsets_[j];
+            vec3 const& c = offsets_[k];
+            // Half of the solid angle of a triangle [van Oosterom, Strackee 1983].
+            double const volume = dot(a, shapes_[t].normal);
+            double const rest = lengths_[i] * lengths_[j] * lengths_[k] + dot(a, b) * lengths_[k] +
+                                dot(b, c) * lengths_[i] + dot(c, a) * lengths_[j];
+            int side = volume < 0 ? -1 : 1;
+            if (at != nullptr && rest < 0 && std::fabs(volume) <= thin * shapes_[t].double_area) {
+                if (int const by_row = side_of(t, *at); by_row != 0) side = by_row;
+            }
+            halves += side * angle(std::fabs(volume), rest);
+        }
+        return halves / (2 * pi);
+    }
+    /// atan2(y, x) for y >= 0, from sums that every machine rounds alike.
+    [[nodiscard]] static double angle(double y, double x) noexcept {
+        double const h = std::sqrt(x * x + y * y);
+        if (!(h > 0)) return 0;
+        double const wide = std::fabs(x);
+        double const a = y <= wide ? 0.5 * pi - elementary::acos(std::min(y / h, 1.0)) : elementary::acos(std::min(wide / h, 1.0));
+        return x < 0 ? pi - a : a;
+    }
+    /// On which side of a cap a voxel's centre lies for its row: 1 behind, -1 before it, 0 cannot be told.
+    [[nodiscard]] int side_of(std::size_t t, std::array<std::int64_t, 3> const& at) const {
+        std::array<row_crossings::corner, 3> const c{corners_[caps_[t][0]], corners_[caps_[t][1]], corners_[caps_[t][2]]};
+        row_crossings::passage const pass = rows_.pass(c, at[1], at[2]);
+        if (pass.turn != 0) return at[0] >= pass.first ? pass.turn : -pass.turn;
+        // Seen edge-on no row passes it; rows count as shifted to lower y, as in `row_crossings`.
+        __extension__ using wide = __int128;
+        std::array<wide, 2> const u{c[1].y - c[0].y, c[1].z - c[0].z};
+        std::array<wide, 2> const v{c[2].y - c[0].y, c[2].z - c[0].z};
+        if (u[0] * v[1] != u[1] * v[0]) return 0;
+        std::array<wide, 2> const& e = u[0] != 0 || u[1] != 0 ? u : v;
+        vec3 const& n = shapes_[t].normal;
+        double const turn = n[1] * static_cast<double>(e[1]) - n[2] * static_cast<double>(e[0]);
+        wide const off = e[0] * (row_crossings::line(at[2]) - c[0].z) - e[1] * (row_crossings::line(at[1]) - c[0].y);
+        wide const side = off != 0 ? off : e[1];
+        if (turn == 0 || side == 0) return 0;
+        return (side > 0) == (turn > 0) ? 1 : -1;
+    }
+
+    row_crossings const& rows_;
+    std::array<std::size_t, 3> size_;
+    std::array<double, 3> scale_{};
+    std::vector<row_crossings::corner> corners_;
+    std::vector<cap> caps_;
+    std::vector<vec3> places_{};
+    std::vector<shape> shapes_{};
+    std::vector<vec3> offsets_{};
+    std::vector<double> lengths_{};
+    voxel low_{};
+    int level_ = 1;
+    std::vector<int> levels_{};
+};
+
+}  // namespace tafoni::detail
+
+#endif
