@@ -18,10 +18,10 @@ namespace tafoni {
 /// Model: `struct mine { bool contains(vec3 const& o) const { return o.cwiseAbs().sum() < 4; }
 ///                       double reach() const { return 4; } };`
 template <class S>
-concept bubble_shape = std::copy_constructible<S> && requires(S const& s, vec3 const& offset) {
+concept bubble_shape = requires(S const& s, vec3 const& offset) {
     { s.contains(offset) } -> std::same_as<bool>;
     { s.reach() } -> std::same_as<double>;
-};
+} && std::copy_constructible<S>;  // last: to ask it of any type converts it to a `bubble_stencil`, which asks here
 
 }  // namespace tafoni
 

@@ -26,6 +26,8 @@ namespace tafoni::detail {
 /// `recount` and `notify` lead to the same integers; `update` takes the cheaper.
 class air_counter {
 public:
+    explicit air_counter(kernel_set kernels = best_kernel_set()) noexcept : kernels_(kernels) {}
+
     /// Whether a change can matter to the bubbles of a brick that reach so far. O(1).
     [[nodiscard]] static bool concerns(voxel_change const& c, voxel brick_corner, int reach) noexcept {
         auto const close = [reach](std::int32_t at, std::int32_t low) { return at >= low - reach && at < low + 32 + reach; };
@@ -125,7 +127,7 @@ private:
     }
 
     void count(bubble_stencil const& b, std::span<brick_position const> position, std::uint32_t* air) const {
-        count_solid({rows_, b.words(), position, air});
+        count_solid({rows_, b.words(), position, air}, kernels_);
         for (std::size_t i = 0; i < position.size(); ++i) air[i] = b.size() - air[i];
     }
 
@@ -188,6 +190,7 @@ private:
         }
     }
 
+    kernel_set kernels_;
     air_rows rows_{};
     int prepared_ = none;
     std::vector<std::size_t> first_{};
