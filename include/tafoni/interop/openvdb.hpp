@@ -33,7 +33,7 @@ namespace tafoni {
 ///
 /// What is rock, by the type of `Grid`:
 /// - `openvdb::Int32Grid`: the value is the state, 0 air, 1 rock, 2 colluvium. This one can be set as well.
-/// - `openvdb::BoolGrid`: true is rock. `openvdb::MaskGrid`: active is rock.
+/// - `openvdb::BoolGrid`: true is rock.
 /// - `openvdb::FloatGrid`, `DoubleGrid`: by their class; negative in a level set, positive in a fog volume.
 /// `Grid const` is only read. Models `voxel_grid`, of `Int32Grid` also `editable_voxel_grid`; readable by
 /// several threads at once.
@@ -82,20 +82,15 @@ public:
     }
     /// \throws invalid_input  `out_of_range` where an `Int32Grid` holds no state.
     [[nodiscard]] voxel_state state(openvdb::Coord const& at) const {
-        auto const& tree = grid_->constTree();
-        if constexpr (std::is_same_v<std::remove_const_t<Grid>, openvdb::MaskGrid>) {
-            return tree.isValueOn(at) ? voxel_state::rock : voxel_state::air;
+        value_type const value = grid_->constTree().getValue(at);
+        if constexpr (std::is_same_v<value_type, bool>) {
+            return value ? voxel_state::rock : voxel_state::air;
+        } else if constexpr (std::is_floating_point_v<value_type>) {
+            return (level_set_ ? value < 0 : value > 0) ? voxel_state::rock : voxel_state::air;
         } else {
-            value_type const value = tree.getValue(at);
-            if constexpr (std::is_same_v<value_type, bool>) {
-                return value ? voxel_state::rock : voxel_state::air;
-            } else if constexpr (std::is_floating_point_v<value_type>) {
-                return (level_set_ ? value < 0 : value > 0) ? voxel_state::rock : voxel_state::air;
-            } else {
-                static_assert(std::is_same_v<value_type, openvdb::Int32>, "openvdb_grid: no states in such values");
-                if (value < 0 || value > 2) refuse(at, value);
-                return static_cast<voxel_state>(value);
-            }
+            static_assert(std::is_same_v<value_type, openvdb::Int32>, "openvdb_grid: no states in such values");
+            if (value < 0 || value > 2) refuse(at, value);
+            return static_cast<voxel_state>(value);
         }
     }
 
