@@ -125,22 +125,46 @@ private:
             inside = inside && at[d] - margin_ >= 0 && at[d] + 32 + margin_ <= static_cast<std::int32_t>(n[d]);
         }
         if (inside) return;
+        int const first = std::max(0, margin_ - low.z);
+        int const end = static_cast<int>(std::min<std::int64_t>(32 + 2 * margin_, static_cast<std::int64_t>(n[2]) - low.z + margin_));
+        std::uint64_t const below = low_bits(first);
+        std::uint64_t const above = row_mask() & ~low_bits(end);
+        std::uint64_t const rock = plane == voxel_plane::colluvium ? 0 : ~std::uint64_t{0};
+        auto const beyond = [&](border_kind kind, std::uint64_t row, int outermost, std::uint64_t where) {
+            if (kind == border_kind::extend) return (row >> outermost & 1) != 0 ? where : 0;
+            return kind == border_kind::rock ? rock & where : 0;
+        };
+        int const x_end = static_cast<int>(std::min<std::int64_t>(32 + margin_, static_cast<std::int64_t>(n[0]) - low.x));
+        int const y_end = static_cast<int>(std::min<std::int64_t>(32 + margin_, static_cast<std::int64_t>(n[1]) - low.y));
+        int const x_first = std::max(-margin_, -low.x);
+        int const y_first = std::max(-margin_, -low.y);
+        for (int y = y_first; y < y_end; ++y) {
+            for (int x = x_first; x < x_end; ++x) {
+                std::uint64_t& row = row_at(x, y);
+                row |= beyond(sides[4], row, first, below) | beyond(sides[5], row, end - 1, above);
+            }
+        }
+        // Rock below or above shows beside the grid too, whatever lies beyond the sides.
+        std::uint64_t const ends = rock & ((sides[4] == border_kind::rock ? below : 0) | (sides[5] == border_kind::rock ? above : 0));
         for (int y = -margin_; y < 32 + margin_; ++y) {
             for (int x = -margin_; x < 32 + margin_; ++x) {
-                bool const beside = static_cast<std::size_t>(low.x + x) >= n[0] ||
-                                    static_cast<std::size_t>(low.y + y) >= n[1];
-                for (int z = -margin_; z < 32 + margin_; ++z) {
-                    bool const within = static_cast<std::size_t>(low.z + z) < n[2];
-                    if (within && !beside) continue;
-                    voxel_state const s = grid.state({low.x + x, low.y + y, low.z + z});
-                    bool const in_plane = plane == voxel_plane::solid  ? s != voxel_state::air
-                                          : plane == voxel_plane::rock ? s == voxel_state::rock
-                                                                       : s == voxel_state::colluvium;
-                    std::uint64_t const bit = std::uint64_t{1} << (z + margin_);
-                    row_at(x, y) = in_plane ? row_at(x, y) | bit : row_at(x, y) & ~bit;
+                bool const x_inside = x >= x_first && x < x_end;
+                bool const y_inside = y >= y_first && y < y_end;
+                if (x_inside && y_inside) continue;
+                border_kind const over_x = x_inside ? border_kind::extend : sides[x < x_first ? 0 : 1];
+                border_kind const over_y = y_inside ? border_kind::extend : sides[y < y_first ? 2 : 3];
+                if (over_x == border_kind::rock || over_y == border_kind::rock) {
+                    row_at(x, y) = rock & row_mask();
+                } else if (over_x == border_kind::air || over_y == border_kind::air) {
+                    row_at(x, y) = ends;
+                } else {
+                    row_at(x, y) = row_at(std::clamp(x, x_first, x_end - 1), std::clamp(y, y_first, y_end - 1));
                 }
             }
         }
+    }
+    static std::uint64_t low_bits(int n) noexcept {
+        return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
     }
 
     std::array<std::uint64_t, 4096> rows_{};
