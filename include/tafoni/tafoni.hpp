@@ -71,6 +71,7 @@
 #include <tafoni/geometry/lattice.hpp>
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/geometry/predicates.hpp>
+#include <tafoni/geometry/refine_faces.hpp>
 #include <tafoni/geometry/repair_mesh.hpp>
 #include <tafoni/geometry/repair_solid.hpp>
 #include <tafoni/geometry/sampling.hpp>
@@ -151,6 +152,7 @@
 #include <tafoni/voxel/copy_states.hpp>
 #include <tafoni/voxel/dense_grid.hpp>
 #include <tafoni/voxel/disc_bubble.hpp>
+#include <tafoni/voxel/dual_surface.hpp>
 #include <tafoni/voxel/ellipsoid_bubble.hpp>
 #include <tafoni/voxel/fallen_block.hpp>
 #include <tafoni/voxel/fill_from_heights.hpp>
@@ -191,5 +193,8 @@
 #include <tafoni/weathering/voxel_run.hpp>
 #include <tafoni/weathering/voxel_weathering.hpp>
 #include <tafoni/weathering/weathered_surface.hpp>
+#include <tafoni/weathering/weathered_voxels.hpp>
+#include <tafoni/weathering/wrinkle_path.hpp>
+#include <tafoni/weathering/wrinkles.hpp>
 
 #endif

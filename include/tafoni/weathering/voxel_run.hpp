@@ -127,6 +127,28 @@ public:
         if (i == skin.size()) return std::nullopt;
         return view(skin, i, v);
     }
+    /// Any voxel (turned axes), as if it were of the skin. O(log of the brick's skin), or O(voxels of the bubble)
+    /// where it is not. A voxel that has never weathered has a decimation of 100.
+    /// \throws invalid_input  when a policy answers out of its range.
+    [[nodiscard]] skin_voxel look(voxel v) const {
+        if (auto const known = at(v)) return *known;
+        auto const [bubble, durability] = core_.ask(core_.grid.centre(v));
+        bubble_stencil const& stencil = core_.stencils()[bubble];
+        std::uint32_t solid = 0;
+        for (bubble_stencil::row const& row : stencil.rows()) {
+            for (int dz = -stencil.reach(); dz <= stencil.reach(); ++dz) {
+                auto const k = static_cast<unsigned>(dz + bubble_stencil::widest);
+                bool const inside = (row.bits[k / 64] >> (k % 64) & 1) != 0;
+                if (inside && core_.grid.is_solid(v + voxel{row.dx, row.dy, dz})) ++solid;
+            }
+        }
+        return {.at = v,
+                .state = core_.grid.state(v),
+                .decimation = core_.covered_left(v),
+                .durability = durability,
+                .air_share = (stencil.size() - solid) / static_cast<double>(stencil.size()),
+                .bubble = bubble};
+    }
     /// Every voxel of the skin, in voxel order. O(n log n).
     [[nodiscard]] std::vector<skin_voxel> skin() const {
         std::vector<skin_voxel> out;

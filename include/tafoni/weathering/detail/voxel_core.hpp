@@ -163,6 +163,35 @@ public:
 
     [[nodiscard]] std::span<bubble_stencil const> stencils() const { return process.bubbles.stencils(); }
 
+    /// What the policies say of a place: the bubble and the durability.
+    [[nodiscard]] std::pair<std::uint16_t, double> ask(vec3 const& at) const {
+        std::size_t const n = stencils().size();
+        std::size_t const chosen = process.bubbles.choose(at);
+        if (chosen >= n) {
+            fail<invalid_input>(errc::index_out_of_range,
+                                "voxel_weathering.bubbles: choose() answered " + std::to_string(chosen) + " of " +
+                                    std::to_string(n) + " stencils",
+                                {.kind = entity::parameter, .value = static_cast<double>(chosen),
+                                 .limit = static_cast<double>(n)});
+        }
+        double const d = process.durability(at);
+        if (!(d >= -1e300 && d <= 1e300)) {
+            fail<invalid_input>(errc::bad_parameter,
+                                "voxel_weathering.durability: got " + number_text(d) + " at (" + number_text(at[0]) +
+                                    ", " + number_text(at[1]) + ", " + number_text(at[2]) + "), need a finite number",
+                                {.kind = entity::parameter, .value = d});
+        }
+        return {static_cast<std::uint16_t>(chosen), std::max(d, Process::least_durability)};
+    }
+    /// What is left of a voxel that is not skin, per cent.
+    [[nodiscard]] double covered_left(voxel v) const noexcept {
+        if (!grid.contains(v) || skins.slot_of(grid.brick_of(v)) == voxel_skins::none) return 100;
+        voxel_skin const& skin = skins[skins.slot_of(grid.brick_of(v))];
+        auto const it = std::lower_bound(skin.covered.begin(), skin.covered.end(), position_of(v));
+        if (it == skin.covered.end() || *it != position_of(v)) return 100;
+        return skin.covered_left[static_cast<std::size_t>(it - skin.covered.begin())];
+    }
+
     voxel_report::stage_seconds taken{};
 
 private:
@@ -340,24 +369,7 @@ private:
     static bool by_place(voxel_change const& a, voxel_change const& b) noexcept { return a.at < b.at; }
 
     [[nodiscard]] auto asker() const {
-        return [this, n = stencils().size()](vec3 const& at) {
-            std::size_t const chosen = process.bubbles.choose(at);
-            if (chosen >= n) {
-                fail<invalid_input>(errc::index_out_of_range,
-                                    "voxel_weathering.bubbles: choose() answered " + std::to_string(chosen) + " of " +
-                                        std::to_string(n) + " stencils",
-                                    {.kind = entity::parameter, .value = static_cast<double>(chosen),
-                                     .limit = static_cast<double>(n)});
-            }
-            double const d = process.durability(at);
-            if (!(d >= -1e300 && d <= 1e300)) {
-                fail<invalid_input>(errc::bad_parameter,
-                                    "voxel_weathering.durability: got " + number_text(d) + " at (" + number_text(at[0]) +
-                                        ", " + number_text(at[1]) + ", " + number_text(at[2]) + "), need a finite number",
-                                    {.kind = entity::parameter, .value = d});
-            }
-            return std::pair(static_cast<std::uint16_t>(chosen), std::max(d, Process::least_durability));
-        };
+        return [this](vec3 const& at) { return ask(at); };
     }
 
     std::optional<rockfall> falls_{};
