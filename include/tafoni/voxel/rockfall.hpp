@@ -94,7 +94,7 @@ public:
                 if (search_->ground().contains(grid, v)) --ground_left_;
             }
             rock_left_ -= gone.size();
-            auto const open = removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction());
+            auto const& open = removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction());
             search_->begin_epoch();
             if (had_ground && ground_left_ == 0) {
                 loose = look_at_all(grid, threads);

@@ -62,6 +62,19 @@ public:
         }
         return false;
     }
+    /// False where neither a voxel nor one of its 26 neighbours is ground for certain. O(1).
+    [[nodiscard]] bool may_touch(sparse_grid const& grid, voxel v) const noexcept {
+        std::array<std::int32_t, 3> const at{v.x, v.y, v.z};
+        for (std::size_t d = 0; d < 3; ++d) {
+            if ((sides_[2 * d] && at[d] <= 1) || (sides_[2 * d + 1] && at[d] + 2 >= static_cast<std::int32_t>(grid.size()[d]))) return true;
+        }
+        if (table_.empty()) return false;
+        for (int c = 0; c < 8; ++c) {
+            voxel const w{v.x + (c & 1 ? 1 : -1), v.y + (c & 2 ? 1 : -1), v.z + (c & 4 ? 1 : -1)};
+            if (!grid.contains(w) || table_[grid.brick_of(w)] != 0) return true;
+        }
+        return false;
+    }
     /// The ground's bits of a column; bits beyond the grid may be set.
     [[nodiscard]] std::uint32_t word(sparse_grid const& grid, std::size_t brick, std::size_t column) const noexcept {
         voxel const low = grid.brick_corner(brick);
@@ -77,7 +90,7 @@ public:
         return out;
     }
     [[nodiscard]] bool contains(sparse_grid const& grid, voxel v) const noexcept {
-        return (word(grid, grid.brick_of(v), sparse_grid::column_of(v)) >> (v.z & 31) & 1U) != 0;
+        return may_touch(grid, v) && (word(grid, grid.brick_of(v), sparse_grid::column_of(v)) >> (v.z & 31) & 1U) != 0;
     }
     /// Rock voxels that are ground. O(bricks).
     [[nodiscard]] std::size_t count(sparse_grid const& grid) const noexcept {

@@ -56,11 +56,12 @@ public:
     /// O(columns + runs), 10 to 40 us.
     void label(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, std::size_t brick) {
         joint_cuts::brick_cuts const* const cut = cuts.of(brick);
+        sparse_grid::brick const* const stored = grid.stored(brick);
         runs_.clear();
         first_.resize(1025);
         for (std::size_t c = 0; c < 1024; ++c) {
             first_[c] = static_cast<std::uint16_t>(runs_.size());
-            std::uint32_t left = grid.plane_word(voxel_plane::rock, brick, c);
+            std::uint32_t left = stored != nullptr ? stored->solid[c] & ~stored->colluvium[c] : grid.plane_word(voxel_plane::rock, brick, c);
             std::uint32_t const bonded = left & left >> 1 & (cut == nullptr ? ~std::uint32_t{0} : ~cut->axis[2][c]);
             while (left != 0) {
                 int const lo = std::countr_zero(left);
@@ -107,17 +108,23 @@ private:
         return r;
     }
     void join(std::size_t before, std::size_t column, std::uint32_t cut) noexcept {
+        rock_run* const runs = runs_.data();
         std::size_t a = first_[before];
         std::size_t const a_end = first_[before + 1];
         std::size_t b = first_[column];
-        while (a < a_end && b < runs_.size()) {
-            if ((runs_[a].bits() & runs_[b].bits() & ~cut) != 0) {
+        std::size_t const b_end = runs_.size();
+        while (a < a_end && b < b_end) {
+            // The same root above both settles most pairs at a glance.
+            if (runs[a].piece != runs[b].piece && (runs[a].bits() & runs[b].bits() & ~cut) != 0) {
                 std::size_t const p = root(a);
                 std::size_t const q = root(b);
-                if (p < q) runs_[q].piece = static_cast<std::uint16_t>(p);
-                if (q < p) runs_[p].piece = static_cast<std::uint16_t>(q);
+                std::size_t const least = p < q ? p : q;
+                runs[p].piece = static_cast<std::uint16_t>(least);
+                runs[q].piece = static_cast<std::uint16_t>(least);
+                runs[a].piece = static_cast<std::uint16_t>(least);
+                runs[b].piece = static_cast<std::uint16_t>(least);
             }
-            (runs_[a].hi <= runs_[b].hi ? a : b)++;
+            (runs[a].hi <= runs[b].hi ? a : b)++;
         }
     }
 

@@ -17,18 +17,20 @@
 
 namespace tafoni::detail {
 
-/// Bits per voxel in the bricks that were written since the last `clear`.
+/// Bits per voxel in the bricks that were written.
 class sparse_bits {
 public:
     [[nodiscard]] std::uint32_t word(std::size_t brick, std::size_t column) const noexcept {
         return table_[brick] == 0 ? 0 : pool_[table_[brick] - 1][column];
     }
-    void reset(std::size_t bricks) {
+    /// The columns of a brick; null where none was written.
+    [[nodiscard]] std::uint32_t const* words(std::size_t brick) const noexcept {
+        return table_[brick] == 0 ? nullptr : pool_[table_[brick] - 1].data();
+    }
+    /// To be called when every bit has been unset again. O(bricks written).
+    void forget_bricks(std::size_t bricks) {
         if (table_.size() != bricks) table_.assign(bricks, 0);
-        for (std::size_t const b : used_) {
-            pool_[table_[b] - 1].fill(0);
-            table_[b] = 0;
-        }
+        for (std::size_t const b : used_) table_[b] = 0;
         used_.clear();
     }
     void set(std::size_t brick, std::size_t column, std::uint32_t bits) {
@@ -60,16 +62,20 @@ public:
     /// `removed`: rising, without repeats, no rock in the grid any more. With `contacts` a voxel that lay on rock
     /// across a joint, or carried some, makes witnesses too. O(removed).
     /// \return  rock voxels, rising, without repeats.
-    std::vector<voxel> witnesses(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground,
+    std::vector<voxel> const& witnesses(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground,
                                  std::span<voxel const> removed, bool contacts) {
-        still_.reset(grid.brick_count());
-        named_.reset(grid.brick_count());
+        if (!clean_) *this = {};  // an allocation failed on the way
+        clean_ = false;
+        still_.forget_bricks(grid.brick_count());
+        named_.forget_bricks(grid.brick_count());
         out_.clear();
         for (voxel const v : removed) still_.set(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
         for (voxel const v : removed) {
             still_.unset(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
             take_out(grid, cuts, ground, v, contacts);
         }
+        for (voxel const v : out_) named_.unset(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
+        clean_ = true;
         std::erase_if(out_, [&](voxel v) { return !grid.is_rock(v); });
         std::sort(out_.begin(), out_.end());
         return out_;
@@ -107,15 +113,33 @@ private:
         }
         return out;
     }
+    /// Rock in the grid or still to be taken out.
+    [[nodiscard]] std::uint32_t rock_around(sparse_grid const& grid, voxel v) const {
+        std::size_t const b = grid.brick_of(v);
+        sparse_grid::brick const* const stored = grid.stored(b);
+        std::uint32_t const* const still = still_.words(b);
+        auto const within = [](std::int32_t at) { return static_cast<std::uint32_t>((at & 31) - 1) < 30; };
+        if (stored == nullptr || still == nullptr || !within(v.x) || !within(v.y) || !within(v.z)) {
+            return around(grid, v, [&](std::size_t brick, std::size_t c) {
+                return grid.plane_word(voxel_plane::rock, brick, c) | still_.word(brick, c);
+            });
+        }
+        std::size_t const low = sparse_grid::column_of(v) - 33;
+        int const down = (v.z & 31) - 1;
+        std::uint32_t out = 0;
+        for (std::size_t i = 0; i < 9; ++i) {
+            std::size_t const c = low + i % 3 + i / 3 * 32;
+            out |= (((stored->solid[c] & ~stored->colluvium[c]) | still[c]) >> down & 7U) << 3 * i;
+        }
+        return out;
+    }
     /// Cells of the 27 that have a next one towards +axis.
     static constexpr std::uint32_t with_next(std::size_t axis) noexcept {
         return axis == 0 ? 077077077U : axis == 1 ? 0777777U : 0333333333U;
     }
 
     void take_out(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v, bool contacts) {
-        std::uint32_t const rock = around(grid, v, [&](std::size_t b, std::size_t c) {
-            return grid.plane_word(voxel_plane::rock, b, c) | still_.word(b, c);
-        }) & ~centre_bit;
+        std::uint32_t const rock = rock_around(grid, v) & ~centre_bit;
         std::array<std::uint32_t, 3> open{with_next(0), with_next(1), with_next(2)};
         bool const cracked = !cuts.empty() && near_cut(grid, cuts, v);
         if (cracked) {
@@ -129,7 +153,7 @@ private:
         }
         bonded &= rock;
         std::uint32_t fixed = 0;
-        if (near_ground(grid, ground, v)) {
+        if (ground.may_touch(grid, v)) {
             fixed = around(grid, v, [&](std::size_t b, std::size_t c) { return ground.word(grid, b, c); });
         }
         bool const witness = (named_.word(grid.brick_of(v), sparse_grid::column_of(v)) & bit(v)) != 0;
@@ -176,13 +200,6 @@ private:
         }
         return false;
     }
-    static bool near_ground(sparse_grid const& grid, rockfall_ground const& ground, voxel v) noexcept {
-        for (int c = 0; c < 8; ++c) {
-            voxel const w{v.x + (c & 1 ? 1 : -1), v.y + (c & 2 ? 1 : -1), v.z + (c & 4 ? 1 : -1)};
-            if (grid.contains(w) ? ground.may_hold(grid, grid.brick_of(w)) : true) return true;
-        }
-        return false;
-    }
     void name(sparse_grid const& grid, voxel v, std::uint32_t cells) {
         for (; cells != 0; cells &= cells - 1) {
             int const at = std::countr_zero(cells);
@@ -199,6 +216,7 @@ private:
     sparse_bits named_{};  ///< witnesses
     std::vector<voxel> out_{};
     std::size_t parted_ = 0;
+    bool clean_ = true;
 };
 
 }  // namespace tafoni::detail
