@@ -35,10 +35,21 @@ struct node_lattice {
 struct surface_slab {
     std::vector<vec3> positions{};
     std::vector<std::uint32_t> corners{};
+
+    /// A vertex on the edge along `axis` from a node, padding counted.
+    void add_vertex(vec3 const& p, std::size_t /*axis*/, std::array<std::size_t, 3> const& /*node*/) { positions.push_back(p); }
+    /// A cell with a boundary; the number of its edge e is edge[e][node[0]].
+    void add_cell(unsigned solid, std::array<std::uint32_t const*, 12> const& edge, std::array<std::size_t, 3> const& node) {
+        surface_case const& c = surface_cases[solid];
+        for (std::size_t t = 0; t < c.count; ++t) {
+            for (std::size_t k = 0; k < 3; ++k) corners.push_back(edge[c.triangles[t][k]][node[0]]);
+        }
+    }
 };
 
-/// `plane(k, buffer)` gives the samples of plane k, x fastest, in the buffer or elsewhere.
-template <class Sample, class Plane>
+/// `plane(k, buffer)` gives the samples of plane k, x fastest, in the buffer or elsewhere. `Sink` has the functions and
+/// the `corners` of `surface_slab`.
+template <class Sample, class Plane, class Sink = surface_slab>
 class slab_walk {
 public:
     slab_walk(node_lattice const& lattice, double iso, Plane const& plane)
@@ -51,7 +62,7 @@ public:
         along_z_.assign(nx_ * ny_, 0);
     }
 
-    surface_slab walk(std::size_t begin, std::size_t end) {
+    Sink walk(std::size_t begin, std::size_t end) {
         load(low_, begin);
         number_plane(low_, true);
         for (std::size_t p = begin; p < end; ++p) {
@@ -146,7 +157,7 @@ private:
                     p.along_x[i + nx_ * j] = count_++;
                     if (!emit) return;
                     double const t = padding(i, 0) ? 1.0 : padding(i + 1, 0) ? 0.0 : share(sample(p, i, j), sample(p, i + 1, j));
-                    out_.positions.emplace_back(coordinate(0, i, t), coordinate(1, j, 0), coordinate(2, p.index, 0));
+                    out_.add_vertex(vec3{coordinate(0, i, t), coordinate(1, j, 0), coordinate(2, p.index, 0)}, 0, {i, j, p.index});
                 });
             }
             if (j + 1 == ny_) break;
@@ -155,7 +166,7 @@ private:
                     p.along_y[i + nx_ * j] = count_++;
                     if (!emit) return;
                     double const t = padding(j, 1) ? 1.0 : padding(j + 1, 1) ? 0.0 : share(sample(p, i, j), sample(p, i, j + 1));
-                    out_.positions.emplace_back(coordinate(0, i, 0), coordinate(1, j, t), coordinate(2, p.index, 0));
+                    out_.add_vertex(vec3{coordinate(0, i, 0), coordinate(1, j, t), coordinate(2, p.index, 0)}, 1, {i, j, p.index});
                 });
             }
         }
@@ -170,7 +181,7 @@ private:
                     double const t = low_.samples == nullptr    ? 1.0
                                      : high_.samples == nullptr ? 0.0
                                                                 : share(sample(low_, i, j), sample(high_, i, j));
-                    out_.positions.emplace_back(coordinate(0, i, 0), coordinate(1, j, 0), coordinate(2, low_.index, t));
+                    out_.add_vertex(vec3{coordinate(0, i, 0), coordinate(1, j, 0), coordinate(2, low_.index, t)}, 2, {i, j, low_.index});
                 });
             }
         }
@@ -210,12 +221,7 @@ private:
                 for (std::size_t r = 0; r < 4; ++r) {
                     solid |= static_cast<unsigned>((row[r][w] >> b & 1U) | (right[r] >> b & 1U) << 1) << (2 * r);
                 }
-                std::size_t const i = 64 * w + static_cast<std::size_t>(b);
-                surface_case const& c = surface_cases[solid];
-                for (std::size_t t = 0; t < c.count; ++t) {
-                    auto const& tri = c.triangles[t];
-                    for (std::size_t k = 0; k < 3; ++k) out_.corners.push_back(edge[tri[k]][i]);
-                }
+                out_.add_cell(solid, edge, {64 * w + static_cast<std::size_t>(b), j, low_.index});
             }
         }
     }
@@ -230,7 +236,7 @@ private:
     node_plane high_{};
     std::vector<std::uint32_t> along_z_{};
     std::uint32_t count_ = 0;
-    surface_slab out_{};
+    Sink out_{};
 };
 
 }  // namespace tafoni::detail

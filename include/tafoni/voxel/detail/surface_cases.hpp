@@ -42,6 +42,13 @@ struct surface_case {
     std::array<std::array<std::uint8_t, 3>, most> triangles{};
 };
 
+/// The loops in which a surface crosses the faces of one cell, by the cell's edges, lowest edge first.
+struct surface_loops {
+    std::uint8_t count = 0;
+    std::array<std::uint8_t, 5> first{};   ///< loop l has the edges first[l] .. first[l + 1] - 1
+    std::array<std::uint8_t, 12> edges{};  ///< counter-clockwise seen from the air
+};
+
 /// The rule [after Lorensen and Cline 1987]. On each face of the cell every run of solid corners is cut off
 /// by one segment, so that solid corners that meet only across a face are separate and air is joined; both cells
 /// at a face see the same corners and so the same segments. The segments close to loops, each of which
@@ -51,23 +58,36 @@ struct surface_case {
 class surface_case_rule {
 public:
     /// Bit c of `solid` is corner c.
-    static constexpr surface_case make(unsigned solid) {
-        surface_case out;
+    static constexpr surface_loops loops(unsigned solid) {
+        surface_loops out;
         std::array<int, 12> next{};
         for (int& n : next) n = -1;
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = 0; side < 2; ++side) trace_face(solid, axis, side, next);
         }
         std::array<bool, 12> seen{};
+        std::uint8_t at = 0;
         for (int start = 0; start < 12; ++start) {
             auto const s = static_cast<std::size_t>(start);
             if (next[s] < 0 || seen[s]) continue;
+            for (std::size_t e = s; !seen[e]; e = static_cast<std::size_t>(next[e])) {
+                seen[e] = true;
+                out.edges[at++] = static_cast<std::uint8_t>(e);
+            }
+            out.first[++out.count] = at;
+        }
+        return out;
+    }
+
+    static constexpr surface_case make(unsigned solid) {
+        surface_case out;
+        surface_loops const found = loops(solid);
+        for (std::size_t l = 0; l < found.count; ++l) {
             std::array<int, 12> loop{};
             std::size_t n = 0;
-            for (int e = start; !seen[static_cast<std::size_t>(e)]; e = next[static_cast<std::size_t>(e)]) {
-                seen[static_cast<std::size_t>(e)] = true;
-                out.crossed = static_cast<std::uint16_t>(out.crossed | 1U << e);
-                loop[n++] = e;
+            for (std::size_t k = found.first[l]; k < found.first[l + 1]; ++k) {
+                out.crossed = static_cast<std::uint16_t>(out.crossed | 1U << found.edges[k]);
+                loop[n++] = found.edges[k];
             }
             cut(loop, n, out);
         }
