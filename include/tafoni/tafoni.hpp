@@ -60,6 +60,7 @@
 #include <tafoni/field/remapped.hpp>
 #include <tafoni/field/sine.hpp>
 #include <tafoni/field/strata.hpp>
+#include <tafoni/fluid/concepts.hpp>
 #include <tafoni/geometry/approx.hpp>
 #include <tafoni/geometry/bvh.hpp>
 #include <tafoni/geometry/concepts.hpp>
