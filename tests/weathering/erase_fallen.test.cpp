@@ -4,6 +4,7 @@
 #include <tafoni/voxel/copy_states.hpp>
 #include <tafoni/voxel/dense_grid.hpp>
 #include <tafoni/weathering/erase_fallen.hpp>
+#include <tafoni/weathering/voxel_run.hpp>
 
 using namespace tafoni;
 
@@ -81,6 +82,48 @@ TEST_CASE("a rock that frost has weathered goes on as a grid: what fell is air, 
 
     // And on: frost over what is left finds those cells and no others.
     CHECK(voxel_cells::from_grid(work).cell_count() == cells.cell_count() - erased);
+}
+
+TEST_CASE("one rock weathers by frost, then by bubbles, then by frost again") {
+    dense_grid rock({.size = {20, 20, 16}}, voxel_state::air);
+    for (int z = 0; z < 12; ++z) {
+        for (int y = 4; y < 16; ++y) {
+            for (int x = 4; x < 16; ++x) rock.set({x, y, z}, voxel_state::rock);
+        }
+    }
+    std::size_t left = rock.count(voxel_state::rock);
+    auto const by_frost = [&](std::uint64_t seed) {
+        voxel_cells const cells = voxel_cells::from_grid(rock, {false, false, false, false, true, false});
+        REQUIRE(cells.cell_count() == left);
+        frost_run run(cells, frost_wedging{}, {.seed = seed});
+        for (std::size_t c = 0; c < cells.cell_count(); ++c) {
+            if (cells.voxel_of(cell_index{c})[2] < 4) run.mark(cell_index{c}, cell_state::core);
+        }
+        frost_report const report = run.run({.paths = 6'000});
+        REQUIRE(report.cells_detached > 20);
+        left -= report.cells_detached;
+        CHECK(erase_fallen(run, rock) == report.cells_detached);
+        CHECK(rock.count(voxel_state::rock) == left);
+    };
+    by_frost(1);
+
+    grid_border border;
+    border.sides[4] = border_kind::rock;
+    voxel_run bubbles(rock, voxel_weathering{}, {.border = border, .colluvium = repose_rule{}, .rockfall = rockfall_options{}});
+    CHECK(bubbles.report().voxels_initial == left);
+    voxel_report const report = bubbles.run({.phases = {{.steps = 20, .spheroidal = 4}}});
+    CHECK(report.voxels_rock < left);
+    CHECK(report.voxels_rock + report.voxels_colluvium + report.voxels_vanished + report.voxels_fallen + report.voxels_left == left);
+    dense_grid const before = rock;
+    copy_states(bubbles.grid(), rock);
+    for (std::size_t n = 0; n < before.states().size(); ++n) {  // no process makes rock
+        REQUIRE((rock.states()[n] != 1 || before.states()[n] == 1));
+    }
+    left = rock.count(voxel_state::rock);
+    CHECK(left == report.voxels_rock);
+    CHECK(rock.count(voxel_state::colluvium) == report.voxels_colluvium);
+    by_frost(2);
+    CHECK(rock.count(voxel_state::colluvium) == report.voxels_colluvium);
 }
 
 TEST_CASE("voxels that are rock no more keep what they hold") {
