@@ -1,9 +1,10 @@
 /// \file
-/// Which removed voxels may have parted a rock: a look at 27 voxels each.
+/// Which removed voxels may have parted a rock: a look at 27 voxels each, and at a block of 8^3 where that leaves it open.
 #ifndef TAFONI_VOXEL_DETAIL_ROCKFALL_REMOVALS_HPP
 #define TAFONI_VOXEL_DETAIL_ROCKFALL_REMOVALS_HPP
 
 #include <tafoni/voxel/detail/joint_cuts.hpp>
+#include <tafoni/voxel/detail/rockfall_block.hpp>
 #include <tafoni/voxel/detail/rockfall_ground.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
 
@@ -55,32 +56,43 @@ private:
 /// another than before.
 ///
 /// A voxel whose bonded neighbours hang together within its 26 neighbours, by bonds or by the ground, parts
-/// nothing. Else all of them become witnesses; a witness that is taken out itself hands on to its own
-/// neighbours. So at the end every piece that is not as it was, but for voxels at its skin, holds a witness.
+/// nothing; nor does one (away from joints) whose neighbours hang together within a block of 8^3. What ends within
+/// that block is a crumb and falls at once, if there is ground elsewhere. Other neighbours become witnesses; a
+/// witness that is taken out itself hands on to its own neighbours. So at the end every piece that is not as
+/// it was, but for voxels at its skin, holds a witness or is made of crumbs.
 class rockfall_removals {
 public:
     /// `removed`: rising, without repeats, no rock in the grid any more. With `contacts` a voxel that lay on rock
-    /// across a joint, or carried some, makes witnesses too. O(removed).
-    /// \return  rock voxels, rising, without repeats.
+    /// across a joint, or carried some, makes witnesses too. Crumbs are looked for only where `has_ground`. O(removed).
+    /// \return  rock voxels that are no crumbs, rising, without repeats.
     std::vector<voxel> const& witnesses(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground,
-                                 std::span<voxel const> removed, bool contacts) {
+                                        std::span<voxel const> removed, bool contacts, bool has_ground) {
         if (!clean_) *this = {};  // an allocation failed on the way
         clean_ = false;
         still_.forget_bricks(grid.brick_count());
         named_.forget_bricks(grid.brick_count());
+        crumbled_.forget_bricks(grid.brick_count());
         out_.clear();
+        crumbs_.clear();
+        has_ground_ = has_ground;
         for (voxel const v : removed) still_.set(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
         for (voxel const v : removed) {
             still_.unset(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
+            if (is_crumb(grid, v)) continue;
             take_out(grid, cuts, ground, v, contacts);
         }
         for (voxel const v : out_) named_.unset(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
-        clean_ = true;
-        std::erase_if(out_, [&](voxel v) { return !grid.is_rock(v); });
+        std::erase_if(out_, [&](voxel v) { return !grid.is_rock(v) || is_crumb(grid, v); });
         std::sort(out_.begin(), out_.end());
+        for (voxel const v : crumbs_) crumbled_.unset(grid.brick_of(v), sparse_grid::column_of(v), bit(v));
+        clean_ = true;
+        std::erase_if(crumbs_, [&](voxel v) { return !grid.is_rock(v); });
+        std::sort(crumbs_.begin(), crumbs_.end());
         return out_;
     }
-    /// Removed voxels that the look at 27 voxels did not settle, since construction.
+    /// Rock voxels that are loose for certain, rising, from the last call: whole pieces, none at a joint.
+    [[nodiscard]] std::vector<voxel> const& crumbs() const noexcept { return crumbs_; }
+    /// Removed voxels that neither look settled, since construction.
     [[nodiscard]] std::size_t parted() const noexcept { return parted_; }
 
 private:
@@ -113,16 +125,21 @@ private:
         }
         return out;
     }
-    /// Rock in the grid or still to be taken out.
+    [[nodiscard]] bool is_crumb(sparse_grid const& grid, voxel v) const noexcept {
+        return !crumbs_.empty() && (crumbled_.word(grid.brick_of(v), sparse_grid::column_of(v)) & bit(v)) != 0;
+    }
+    [[nodiscard]] std::uint32_t rock_word(sparse_grid const& grid, std::size_t brick, std::size_t c) const noexcept {
+        return (grid.plane_word(voxel_plane::rock, brick, c) | still_.word(brick, c)) & ~crumbled_.word(brick, c);
+    }
+    /// Rock in the grid or still to be taken out, without crumbs.
     [[nodiscard]] std::uint32_t rock_around(sparse_grid const& grid, voxel v) const {
         std::size_t const b = grid.brick_of(v);
         sparse_grid::brick const* const stored = grid.stored(b);
         std::uint32_t const* const still = still_.words(b);
+        std::uint32_t const* const gone = crumbled_.words(b);
         auto const within = [](std::int32_t at) { return static_cast<std::uint32_t>((at & 31) - 1) < 30; };
-        if (stored == nullptr || still == nullptr || !within(v.x) || !within(v.y) || !within(v.z)) {
-            return around(grid, v, [&](std::size_t brick, std::size_t c) {
-                return grid.plane_word(voxel_plane::rock, brick, c) | still_.word(brick, c);
-            });
+        if (stored == nullptr || still == nullptr || gone != nullptr || !within(v.x) || !within(v.y) || !within(v.z)) {
+            return around(grid, v, [&](std::size_t brick, std::size_t c) { return rock_word(grid, brick, c); });
         }
         std::size_t const low = sparse_grid::column_of(v) - 33;
         int const down = (v.z & 31) - 1;
@@ -141,7 +158,7 @@ private:
     void take_out(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v, bool contacts) {
         std::uint32_t const rock = rock_around(grid, v) & ~centre_bit;
         std::array<std::uint32_t, 3> open{with_next(0), with_next(1), with_next(2)};
-        bool const cracked = !cuts.empty() && near_cut(grid, cuts, v);
+        bool const cracked = !cuts.empty() && near_cut(grid, cuts, v, 1);
         if (cracked) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 open[axis] &= ~around(grid, v, [&](std::size_t b, std::size_t c) { return cuts.word(axis, b, c); });
@@ -165,12 +182,48 @@ private:
             if ((rock & up) != 0 && (open[2] & centre_bit) == 0) name(grid, v, up);
             if ((rock & down) != 0 && (open[2] & down) == 0) footing = true;
         }
-        if (!hangs_together) {
+        if (hangs_together) {
+            if (footing) name(grid, v, bonded & (0U - bonded));
+        } else if ((fixed & centre_bit) != 0 || (!cuts.empty() && near_cut(grid, cuts, v, 5))) {
             ++parted_;
             name(grid, v, bonded);
-        } else if (footing) {
-            name(grid, v, bonded & (0U - bonded));
+        } else {
+            look_wider(grid, ground, v, bonded, footing);
         }
+    }
+
+    /// The same by a block of 8^3.
+    void look_wider(sparse_grid const& grid, rockfall_ground const& ground, voxel v, std::uint32_t bonded, bool footing) {
+        auto const block = rockfall_block::around(grid, v, [&](std::size_t b, std::size_t c) { return rock_word(grid, b, c); });
+        std::uint32_t going_on = 0;  // a cell of each part that leaves the block
+        bool any_held = false;
+        while (bonded != 0) {
+            std::uint32_t const cell = bonded & (0U - bonded);
+            auto const part = block.flood(neighbour(v, cell));
+            for (std::uint32_t left = bonded; left != 0; left &= left - 1) {
+                std::uint32_t const other = left & (0U - left);
+                if (block.has(part, neighbour(v, other))) bonded &= ~other;
+            }
+            bool goes_on = !has_ground_ || rockfall_block::reaches_out(part);
+            if (!goes_on) {
+                bool held = false;
+                block.for_voxels(part, [&](voxel w) { held = held || ground.contains(grid, w); });
+                any_held = any_held || held;
+                if (held) continue;
+                block.for_voxels(part, [&](voxel w) {
+                    // Whoever speaks for the rest must not go with the crumb.
+                    footing = footing || (named_.word(grid.brick_of(w), sparse_grid::column_of(w)) & bit(w)) != 0;
+                    crumbs_.push_back(w);
+                    crumbled_.set(grid.brick_of(w), sparse_grid::column_of(w), bit(w));
+                });
+                continue;
+            }
+            going_on |= cell;
+        }
+        // A single part that goes on is all that is left, unless the ground was in another.
+        bool const settled = going_on == 0 || ((going_on & (going_on - 1)) == 0 && !any_held);
+        if (!settled) ++parted_;
+        if (!settled || footing) name(grid, v, going_on);
     }
 
     /// Whether the bonded neighbours, and the ground where the voxel was of it, hang together around the voxel.
@@ -190,20 +243,24 @@ private:
             seen = next;
         }
     }
-    static bool near_cut(sparse_grid const& grid, joint_cuts const& cuts, voxel v) noexcept {
-        voxel const lo{std::max(v.x - 1, 0), std::max(v.y - 1, 0), std::max(v.z - 1, 0)};
-        voxel const hi{std::min(v.x + 1, static_cast<std::int32_t>(grid.size()[0]) - 1),
-                       std::min(v.y + 1, static_cast<std::int32_t>(grid.size()[1]) - 1),
-                       std::min(v.z + 1, static_cast<std::int32_t>(grid.size()[2]) - 1)};
+    static bool near_cut(sparse_grid const& grid, joint_cuts const& cuts, voxel v, std::int32_t by) noexcept {
+        voxel const lo{std::max(v.x - by, 0), std::max(v.y - by, 0), std::max(v.z - by, 0)};
+        voxel const hi{std::min(v.x + by, static_cast<std::int32_t>(grid.size()[0]) - 1),
+                       std::min(v.y + by, static_cast<std::int32_t>(grid.size()[1]) - 1),
+                       std::min(v.z + by, static_cast<std::int32_t>(grid.size()[2]) - 1)};
         for (int c = 0; c < 8; ++c) {
             if (cuts.of(grid.brick_of({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z})) != nullptr) return true;
         }
         return false;
     }
+    /// The neighbour that the lowest of some cells stands for.
+    static voxel neighbour(voxel v, std::uint32_t cells) noexcept {
+        int const at = std::countr_zero(cells);
+        return {v.x + at / 3 % 3 - 1, v.y + at / 9 - 1, v.z + at % 3 - 1};
+    }
     void name(sparse_grid const& grid, voxel v, std::uint32_t cells) {
         for (; cells != 0; cells &= cells - 1) {
-            int const at = std::countr_zero(cells);
-            voxel const w{v.x + at / 3 % 3 - 1, v.y + at / 9 - 1, v.z + at % 3 - 1};
+            voxel const w = neighbour(v, cells);
             std::size_t const b = grid.brick_of(w);
             std::size_t const c = sparse_grid::column_of(w);
             if ((named_.word(b, c) & bit(w)) != 0) continue;
@@ -214,7 +271,10 @@ private:
 
     sparse_bits still_{};  ///< removed, but not taken out yet
     sparse_bits named_{};  ///< witnesses
+    sparse_bits crumbled_{};
     std::vector<voxel> out_{};
+    std::vector<voxel> crumbs_{};
+    bool has_ground_ = false;
     std::size_t parted_ = 0;
     bool clean_ = true;
 };
