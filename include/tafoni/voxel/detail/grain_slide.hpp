@@ -37,6 +37,7 @@ public:
         sides_ = grid.border().sides;
         vec3 const h = grid.spacing();
         pitch_ = {h[0], h[1]};
+        square_ = pitch_[0] == pitch_[1];
         double const radians = rule.angle * 0x1.1df46a2529d39p-6;
         double const slope = elementary::sin(radians) / elementary::cos(radians);
         for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -50,6 +51,12 @@ public:
         }
     }
 
+    /// The same rule over another grid of the same frame.
+    [[nodiscard]] grain_slide over(sparse_grid const& grid) const noexcept {
+        grain_slide out = *this;
+        out.grid_ = &grid;
+        return out;
+    }
     [[nodiscard]] int baseline() const noexcept { return baseline_; }
     [[nodiscard]] std::uint64_t grain_key(voxel start) const noexcept { return key_ ^ voxel_key(start); }
 
@@ -104,11 +111,28 @@ public:
 private:
     static constexpr std::array<std::array<std::int32_t, 2>, 4> sides_xy{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
-    /// The same draw whenever the same grain stands in the same voxel before the same choice.
-    [[nodiscard]] static std::size_t choose(std::uint64_t grain, voxel p, std::uint32_t ties) noexcept {
-        if (ties == 1) return 0;
+    /// One of the bits of `sides`: the same whenever the same grain stands in the same voxel before the same choice.
+    [[nodiscard]] static std::uint32_t choose(std::uint64_t grain, voxel p, std::uint32_t sides) noexcept {
         std::uint64_t const h = scatter(grain ^ scatter(voxel_key(p) + 0x9E3779B97F4A7C15ULL));
-        return static_cast<std::size_t>((h >> 32) * ties >> 32);
+        auto const ties = static_cast<std::uint64_t>(std::popcount(sides));
+        for (std::uint64_t skip = (h >> 32) * ties >> 32; skip > 0; --skip) sides &= sides - 1;
+        return sides & (0U - sides);
+    }
+
+    /// Those of the four sides, as bits, that are too steep and as steep as any; without a branch where the
+    /// pitch is the same along x and y.
+    [[nodiscard]] std::uint32_t steepest_sides(std::array<std::int32_t, 4> const& n) const noexcept {
+        std::int32_t const x_most = std::max(n[0], n[1]);
+        std::int32_t const y_most = std::max(n[2], n[3]);
+        std::uint32_t const x = (n[0] == x_most ? 1U : 0U) | (n[1] == x_most ? 2U : 0U);
+        std::uint32_t const y = (n[2] == y_most ? 4U : 0U) | (n[3] == y_most ? 8U : 0U);
+        if (square_) {
+            std::uint32_t const both = (x_most >= y_most ? x : 0U) | (y_most >= x_most ? y : 0U);
+            return std::max(x_most, y_most) > limit_[0][1] ? both : 0U;
+        }
+        double const x_slope = x_most > limit_[0][1] ? slope_of(x_most, 1, 0) : 0;
+        double const y_slope = y_most > limit_[1][1] ? slope_of(y_most, 1, 1) : 0;
+        return (x_slope > 0 && x_slope >= y_slope ? x : 0U) | (y_slope > 0 && y_slope >= x_slope ? y : 0U);
     }
 
     /// A baseline of one column: nearly always the four columns are in one brick and end in one word.
@@ -130,20 +154,10 @@ private:
         } else {
             for (std::size_t d = 0; d < 4; ++d) n[d] = depth(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
         }
-        bool const x_steep = n[0] > limit_[0][1] || n[1] > limit_[0][1];
-        bool const y_steep = n[2] > limit_[1][1] || n[3] > limit_[1][1];
-        if (!x_steep && !y_steep) return step::rests;
-        std::int32_t const x_most = x_steep ? std::max(n[0], n[1]) : 0;
-        std::int32_t const y_most = y_steep ? std::max(n[2], n[3]) : 0;
-        double const x_slope = slope_of(x_most, 1, 0);
-        double const y_slope = slope_of(y_most, 1, 1);
-        std::array<std::uint8_t, 4> tied{};
-        std::uint32_t ties = 0;
-        for (std::uint8_t d = 0; d < 4; ++d) {
-            if (d < 2 ? n[d] == x_most && x_slope >= y_slope : n[d] == y_most && y_slope >= x_slope) tied[ties++] = d;
-        }
-        wary = ties > 1;
-        std::size_t const d = tied[choose(grain, p, ties)];
+        std::uint32_t const steepest = steepest_sides(n);
+        if (steepest == 0) return step::rests;
+        wary = (steepest & (steepest - 1)) != 0;
+        auto const d = static_cast<std::size_t>(std::countr_zero(wary ? choose(grain, p, steepest) : steepest));
         voxel const to{p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z - (n[d] - 1)};
         if (n[d] == sparse_grid::bottomless || to.x < 0 || to.y < 0 || to.x >= nx_ || to.y >= ny_) return step::leaves;
         p = to;
@@ -152,18 +166,17 @@ private:
 
     [[nodiscard]] step slide_far(voxel& p, std::uint64_t grain, bool& wary) const noexcept {
         wary = true;
-        std::array<side, 4> best{};
-        double steepest = 0;
-        std::uint32_t ties = 0;
+        std::array<side, 4> sides{};
+        double slope = 0;
+        std::uint32_t steepest = 0;
         for (std::size_t d = 0; d < 4; ++d) {
-            side const s = look(p, d);
-            if (s.slope == 0 || s.slope < steepest) continue;
-            if (s.slope > steepest) ties = 0;
-            steepest = s.slope;
-            best[ties++] = s;
+            sides[d] = look(p, d);
+            if (sides[d].slope == 0 || sides[d].slope < slope) continue;
+            steepest = (sides[d].slope > slope ? 0U : steepest) | 1U << d;
+            slope = sides[d].slope;
         }
-        if (ties == 0) return step::rests;
-        side const& s = best[choose(grain, p, ties)];
+        if (steepest == 0) return step::rests;
+        side const& s = sides[static_cast<std::size_t>(std::countr_zero(choose(grain, p, steepest)))];
         if (s.leaves) return step::leaves;
         p = s.to;
         return step::moves;
@@ -219,6 +232,7 @@ private:
     std::int32_t ny_ = 0;
     std::array<border_kind, 6> sides_{};
     std::array<double, 2> pitch_{};
+    bool square_ = true;  ///< same pitch and limits along x and y
     std::array<std::array<std::int32_t, repose_rule::longest_baseline + 1>, 2> limit_{};
 };
 
