@@ -43,7 +43,7 @@ struct grid_frame {
     void validate() const {
         for (std::size_t d = 0; d < 3; ++d) {
             auto const e = static_cast<Eigen::Index>(d);
-            std::string const at = "[" + std::to_string(d) + "]";
+            std::string const at{'[', static_cast<char>('0' + d), ']'};
             if (size[d] == 0) {
                 detail::fail<invalid_input>(errc::empty_input, "grid_frame.size" + at + ": got 0, need at least 1",
                                             {.kind = entity::parameter, .value = 0, .limit = 1});

@@ -17,7 +17,7 @@
 namespace tafoni::detail {
 
 [[nodiscard]] inline std::string voxel_text(std::size_t i, std::size_t j, std::size_t k) {
-    return "(" + std::to_string(i) + ", " + std::to_string(j) + ", " + std::to_string(k) + ")";
+    return std::string("(") + std::to_string(i) + ", " + std::to_string(j) + ", " + std::to_string(k) + ")";
 }
 [[nodiscard]] inline std::string size_text(std::array<std::size_t, 3> const& n) {
     return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
