@@ -141,8 +141,7 @@ private:
         double slope = 0;
         for (std::size_t t = 0; t < caps_.size(); ++t) {
             shape const& s = shapes_[t];
-            double const off_plane = std::fabs(dot(s.normal, centre - s.centre));
-            if (off_plane <= radius * s.double_area && length(centre - s.centre) <= radius + s.radius) return false;
+            if (reaches(centre, radius, t)) return false;
             double const distance = segment_distance(centre, places_[caps_[t][1]], places_[caps_[t][2]]) - radius;
             if (!(distance > 0)) return false;
             slope += s.edge / (distance * distance);
@@ -153,6 +152,21 @@ private:
         double const here = share(centre, nullptr);
         level_ = level_of(here - change);
         return level_ == level_of(here + change);
+    }
+    /// Whether a cap comes into the ball.
+    [[nodiscard]] bool reaches(vec3 const& p, double radius, std::size_t t) const noexcept {
+        shape const& s = shapes_[t];
+        vec3 const off = p - s.centre;
+        if (std::fabs(dot(s.normal, off)) > radius * s.double_area || length(off) > radius + s.radius) return false;
+        std::array<vec3, 3> const c{places_[caps_[t][0]], places_[caps_[t][1]], places_[caps_[t][2]]};
+        bool above = true;
+        for (std::size_t e = 0; e < 3; ++e) {
+            vec3 const& a = c[e];
+            vec3 const& b = c[(e + 1) % 3];
+            if (segment_distance(p, a, b) <= radius) return true;
+            above = above && dot(cross(s.normal, b - a), p - a) >= 0;
+        }
+        return above;
     }
     [[nodiscard]] static double segment_distance(vec3 const& p, vec3 const& a, vec3 const& b) noexcept {
         vec3 const along = b - a;
