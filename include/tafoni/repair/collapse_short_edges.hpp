@@ -29,17 +29,21 @@ namespace detail {
 /// One pass: edges whose surroundings no other edge of the pass has changed.
 class edge_collapser {
 public:
-    edge_collapser(triangle_surface& s, double threshold) : surface_(s), limit_(threshold * threshold) {}
+    /// `known` are the rings of the surface as it is, or null.
+    edge_collapser(triangle_surface& s, double threshold, vertex_rings const* known)
+        : surface_(s), limit_(threshold * threshold), known_(known) {}
 
     /// Number of collapsed edges; `survivor` leads every vertex to the one that it became. O(faces).
     std::size_t pass(std::vector<std::uint32_t>& survivor) {
         std::vector<std::array<std::uint32_t, 2>> const edges = short_edges();
         if (edges.empty()) return 0;
-        rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+        if (known_ == nullptr) rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+        vertex_rings const& rings = known_ != nullptr ? *known_ : rings_;
+        known_ = nullptr;
         touched_.assign(surface_.positions.size(), 0);
         std::size_t done = 0;
         for (auto const& [u, v] : edges) {
-            if (collapse(u, v)) {
+            if (collapse(rings, u, v)) {
                 survivor[v] = u;
                 ++done;
             }
@@ -77,22 +81,22 @@ private:
         return edges;
     }
 
-    bool collapse(std::uint32_t u, std::uint32_t v) {
+    bool collapse(vertex_rings const& rings, std::uint32_t u, std::uint32_t v) {
         if (touched_[u] != 0 || touched_[v] != 0) return false;
-        auto const at_u = rings_.neighbors(u);
-        auto const at_v = rings_.neighbors(v);
+        auto const at_u = rings.neighbors(u);
+        auto const at_v = rings.neighbors(v);
         // The link condition: the ends share no neighbours but the corners opposite the edge.
         common_.clear();
         std::set_intersection(at_u.begin(), at_u.end(), at_v.begin(), at_v.end(), std::back_inserter(common_));
         std::size_t beside = 0;
-        for (auto const& c : rings_.faces(u)) beside += has(surface_.triangles[c.face], v) ? 1U : 0U;
+        for (auto const& c : rings.faces(u)) beside += has(surface_.triangles[c.face], v) ? 1U : 0U;
         if (beside == 0 || beside > 2 || common_.size() != beside) return false;
-        bool const border_u = rings_.is_border(u);
-        bool const border_v = rings_.is_border(v);
+        bool const border_u = rings.is_border(u);
+        bool const border_v = rings.is_border(v);
         if (beside == 2 && border_u && border_v) return false;  // would pinch the surface
-        if (beside == 2 && rings_.faces(u).size() + rings_.faces(v).size() <= 6) return false;  // a tetrahedron would fold
+        if (beside == 2 && rings.faces(u).size() + rings.faces(v).size() <= 6) return false;  // a tetrahedron would fold
         for (std::uint32_t const w : common_) {
-            if (rings_.neighbors(w).size() <= 3 && !rings_.is_border(w)) return false;
+            if (rings.neighbors(w).size() <= 3 && !rings.is_border(w)) return false;
         }
         for (auto const& ring : {at_u, at_v}) {
             for (std::uint32_t const w : ring) {
@@ -103,9 +107,9 @@ private:
         vec3 const p = surface_.positions[u];
         vec3 const q = surface_.positions[v];
         vec3 target = border_u == border_v ? vec3{0.5 * p + 0.5 * q} : border_u ? p : q;
-        if (turns_over(u, v, target) || turns_over(v, u, target)) return false;
+        if (turns_over(rings, u, v, target) || turns_over(rings, v, u, target)) return false;
         surface_.positions[u] = target;
-        for (auto const& c : rings_.faces(v)) {
+        for (auto const& c : rings.faces(v)) {
             for (std::uint32_t& corner : surface_.triangles[c.face]) {
                 if (corner == v) corner = u;
             }
@@ -118,8 +122,8 @@ private:
     }
 
     /// Whether a triangle at `moving`, but for those beside the edge, would face the other way.
-    [[nodiscard]] bool turns_over(std::uint32_t moving, std::uint32_t other, vec3 const& target) const {
-        for (auto const& c : rings_.faces(moving)) {
+    [[nodiscard]] bool turns_over(vertex_rings const& rings, std::uint32_t moving, std::uint32_t other, vec3 const& target) const {
+        for (auto const& c : rings.faces(moving)) {
             auto const& t = surface_.triangles[c.face];
             if (has(t, other)) continue;
             vec3 const& a = surface_.positions[t[(c.place + 1) % 3]];
@@ -138,6 +142,7 @@ private:
 
     triangle_surface& surface_;
     double limit_;
+    vertex_rings const* known_;
     vertex_rings rings_{};
     std::vector<unsigned char> touched_{};
     std::vector<std::uint32_t> common_{};
@@ -151,10 +156,15 @@ struct collapse_short_edges_fn {
     collapse_report operator()(triangle_surface& surface, double threshold) const {
         require_range("collapse_short_edges: threshold", threshold, 0, 1e100);
         surface.validate();
+        return trusted(surface, threshold, nullptr);
+    }
+
+    /// Of a surface that is known to be valid, with its rings where they are known.
+    static collapse_report trusted(triangle_surface& surface, double threshold, vertex_rings const* known) {
         collapse_report report;
         std::vector<std::uint32_t> survivor(surface.positions.size());
         for (std::size_t v = 0; v < survivor.size(); ++v) survivor[v] = static_cast<std::uint32_t>(v);
-        edge_collapser collapser(surface, threshold);
+        edge_collapser collapser(surface, threshold, known);
         while (std::size_t const done = collapser.pass(survivor)) {
             report.collapsed += done;
             // Triangles of a collapsed edge are gone at once, so that the next pass does not see them.

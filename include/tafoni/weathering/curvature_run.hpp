@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -185,7 +186,8 @@ private:
             normal_.resize(n);
             vertex_normals(view(), normal_, threads);
         }
-        double const reach = surface_.mean_edge_length() * report_.step;
+        if (!(mean_edge_ >= 0)) measure(threads);
+        double const reach = mean_edge_ * report_.step;
         double const power = options_.power;
         threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t v = begin; v < end; ++v) {
@@ -226,13 +228,49 @@ private:
             input_of_[v] = vertex_index{};
         }
         ++report_.iterations;
-        if (options_.topology == mesh_topology::adapt && options_.small_edge > 0) thin_out();
+        measure(threads);
+        if (options_.topology == mesh_topology::adapt && shortest_ < options_.small_edge * mean_edge_) thin_out();
         return true;
     }
 
+    /// Mean and shortest edge; blocks of one size, so that the sum does not depend on threads.
+    template <executor Executor>
+    void measure(Executor const& threads) {
+        refresh();
+        struct edge_sum {
+            double sum = 0;
+            std::size_t edges = 0;
+            double least = std::numeric_limits<double>::infinity();
+        };
+        std::size_t const n = surface_.positions.size();
+        std::vector<edge_sum> parts((n + detail::vertex_grain - 1) / detail::vertex_grain);
+        threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
+            edge_sum p;
+            for (std::size_t v = begin; v < end; ++v) {
+                vec3 const at = surface_.positions[v];
+                for (std::uint32_t const w : rings_.neighbors(v)) {
+                    if (w < v) continue;
+                    double const l = length(surface_.positions[w] - at);
+                    p.sum += l;
+                    p.least = std::min(p.least, l);
+                    ++p.edges;
+                }
+            }
+            parts[begin / detail::vertex_grain] = p;
+        });
+        edge_sum all;
+        for (edge_sum const& p : parts) {
+            all.sum += p.sum;
+            all.edges += p.edges;
+            all.least = std::min(all.least, p.least);
+        }
+        mean_edge_ = all.edges > 0 ? all.sum / static_cast<double>(all.edges) : 0.0;
+        shortest_ = all.least;
+    }
+
     void thin_out() {
-        double const threshold = options_.small_edge * surface_.mean_edge_length();
-        collapse_report const gone = collapse_short_edges(surface_, threshold);
+        double const threshold = options_.small_edge * mean_edge_;
+        collapse_report const gone = detail::collapse_short_edges_fn::trusted(surface_, threshold, &rings_);
         if (gone.collapsed == 0) return;
         report_.edges_collapsed += gone.collapsed;
         std::size_t const n = surface_.positions.size();
@@ -250,6 +288,7 @@ private:
         for (vertex_index& v : new_vertex_) v = gone.new_vertex[v.value];
         normal_.clear();
         fresh_ = false;
+        mean_edge_ = -1;
     }
 
     /// Whether the surface since the last search is sound; else goes back to it and halves the step.
@@ -265,6 +304,7 @@ private:
         report_.iterations = safe_.iterations;
         report_.edges_collapsed = safe_.edges_collapsed;
         fresh_ = false;
+        mean_edge_ = -1;
         normal_.clear();
         report_.step /= 2;
         ++report_.retries;
@@ -294,6 +334,8 @@ private:
     std::vector<vertex_index> new_vertex_{};
     std::vector<vertex_index> input_of_{};    ///< vertex now -> that of the input it still is, or not valid
     curvature_report report_{};
+    double mean_edge_ = -1;  ///< of the surface now; below 0: not measured
+    double shortest_ = 0;
     double start_volume_ = 0;
     saved safe_{};
 };
