@@ -233,7 +233,7 @@ TEST_CASE("an update leads to the same counts whichever way it takes") {
         std::erase_if(changes, [&](voxel_change const& c) {
             return !detail::air_counter::concerns(c, grid.brick_corner(r.brick), detail::air_counter::reach_of(bubbles));
         });
-        (detail::air_counter::recount_is_cheaper(r.position.size(), changes.size()) ? many : few) = true;
+        (counter.recount_is_cheaper(bubbles, r.view(), changes.size()) ? many : few) = true;
         counter.update(grid, r.brick, bubbles, r.view(), changes);
         counter.recount(grid, oracle.brick, bubbles, oracle.view());
         CHECK(r.air == oracle.air);

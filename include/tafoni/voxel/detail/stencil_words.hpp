@@ -21,6 +21,23 @@ struct stencil_row {
     std::int32_t dy = 0;
     std::array<std::uint64_t, 2> bits{};  ///< bit dz + `widest`, 97 in all
 
+    /// The same voxels seen from each of them: where a change is met from.
+    [[nodiscard]] stencil_row mirrored() const noexcept {
+        stencil_row out{-dx, -dy, {}};
+        for (unsigned k = 0; k <= 2 * unsigned{widest}; ++k) {
+            unsigned const to = 2 * unsigned{widest} - k;
+            out.bits[to / 64] |= (bits[k / 64] >> (k % 64) & 1) << (to % 64);
+        }
+        return out;
+    }
+    /// Those of the heights 0 .. 31 that the row holds when its centre is at height z, any.
+    [[nodiscard]] std::uint32_t around(std::int32_t z) const noexcept {
+        std::int32_t const shift = widest - z;
+        if (shift <= -32 || shift >= 128) return 0;
+        if (shift < 0) return static_cast<std::uint32_t>(bits[0] << -shift);
+        if (shift >= 64) return static_cast<std::uint32_t>(bits[1] >> (shift - 64));
+        return static_cast<std::uint32_t>(bits[0] >> shift | bits[1] << 1 << (63 - shift));
+    }
     /// Bits dz + r for |dz| <= r. `r` below 32, no voxel beyond.
     [[nodiscard]] std::uint64_t centred(int r) const noexcept {
         auto const shift = static_cast<unsigned>(widest - r);
@@ -46,6 +63,7 @@ public:
     static constexpr int narrow_anchor = 8;   ///< masks of narrow words hold dz at bit dz + 8 ...
     static constexpr int medium_anchor = 16;  ///< ... of medium ones at dz + 16, of wide ones at dz + 48
     static constexpr std::int32_t stride = 64;
+    static constexpr std::size_t unrolled = 4;  ///< words come in multiples of it, the last with empty masks
     static constexpr std::int32_t wide_stride = 128;
 
     stencil_words() = default;
@@ -60,6 +78,7 @@ public:
                 if ((r.bits[k / 64] >> (k % 64) & 1) != 0) upwards = std::max(upwards, dz < 0 ? -dz : dz);
             }
         }
+        for (stencil_row const& r : rows) mirrored_.push_back(r.mirrored());
         layout_ = sideways > 16 || upwards > 16 ? layout::wide : upwards > 8 ? layout::medium : layout::narrow;
         if (layout_ == layout::wide) {
             for (stencil_row const& r : rows) {
@@ -71,10 +90,13 @@ public:
         } else {
             pack<std::uint32_t>(rows, narrow_anchor);
         }
+        while (words_.size() % unrolled != 0) words_.push_back({0, 0});
     }
 
     [[nodiscard]] layout kind() const noexcept { return layout_; }
     [[nodiscard]] std::span<word const> words() const noexcept { return words_; }
+    /// Rows of those whose bubble holds the centre.
+    [[nodiscard]] std::span<stencil_row const> mirrored() const noexcept { return mirrored_; }
     /// 16 narrow or 8 medium rows each, beginning at `block_offsets`; none when wide.
     [[nodiscard]] std::span<block const> blocks() const noexcept { return blocks_; }
     [[nodiscard]] std::span<std::int32_t const> block_offsets() const noexcept { return block_offsets_; }
@@ -114,6 +136,7 @@ private:
 
     layout layout_ = layout::narrow;
     std::vector<word> words_{};
+    std::vector<stencil_row> mirrored_{};
     std::vector<block> blocks_{};
     std::vector<std::int32_t> block_offsets_{};
 };

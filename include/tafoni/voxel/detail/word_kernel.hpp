@@ -35,36 +35,30 @@ struct word_kernel {
 
 private:
     [[gnu::always_inline]] static inline void narrow(count_task const& t) {
-        auto const words = t.bubble.words();
         for (std::size_t i = 0; i < t.position.size(); ++i) {
-            auto const z = static_cast<unsigned>(t.position[i] & 31);
             std::uint32_t const* const at = t.rows.narrow(t.position[i]);
-            int solid = 0;
-            for (auto const& w : words) {
+            int const z = t.position[i] & 15;
+            t.solid[i] = sum(t.bubble.words(), [at, z](stencil_words::word const& w) {
                 std::uint64_t pair = 0;
                 std::memcpy(&pair, at + w.offset, sizeof pair);
-                solid += std::popcount(pair >> (z & 15) & w.mask);
-            }
-            t.solid[i] = static_cast<std::uint32_t>(solid);
+                return pair >> z & w.mask;
+            });
         }
     }
     [[gnu::always_inline]] static inline void medium(count_task const& t) {
-        auto const words = t.bubble.words();
         for (std::size_t i = 0; i < t.position.size(); ++i) {
-            auto const z = static_cast<unsigned>(t.position[i] & 31);
             std::uint64_t const* const at = t.rows.medium(t.position[i]);
-            int solid = 0;
-            for (auto const& w : words) solid += std::popcount(at[w.offset] >> z & w.mask);
-            t.solid[i] = static_cast<std::uint32_t>(solid);
+            int const z = t.position[i] & 31;
+            t.solid[i] = sum(t.bubble.words(), [at, z](stencil_words::word const& w) { return at[w.offset] >> z & w.mask; });
         }
     }
     [[gnu::always_inline]] static inline void wide(count_task const& t) {
-        auto const words = t.bubble.words();
         for (std::size_t i = 0; i < t.position.size(); ++i) {
-            auto const z = static_cast<unsigned>(t.position[i] & 31);
             std::uint64_t const* const at = t.rows.wide(t.position[i]);
+            int const z = t.position[i] & 31;
+            auto const words = t.bubble.words();
             int solid = 0;
-            for (std::size_t k = 0; k + 1 < words.size(); k += 2) {
+            for (std::size_t k = 0; k < words.size(); k += 2) {
                 std::uint64_t const* const row = at + 2 * words[k].offset;
                 std::uint64_t const carried = row[1] << 1 << (63 - z);
                 solid += std::popcount((row[0] >> z | carried) & words[k].mask) +
@@ -72,6 +66,23 @@ private:
             }
             t.solid[i] = static_cast<std::uint32_t>(solid);
         }
+    }
+    /// Four sums, so that they do not wait for each other.
+    template <class Masked>
+    [[gnu::always_inline]] static inline std::uint32_t sum(std::span<stencil_words::word const> words,
+                                                           Masked const& masked) {
+        static_assert(stencil_words::unrolled == 4);
+        int a = 0;
+        int b = 0;
+        int c = 0;
+        int d = 0;
+        for (std::size_t k = 0; k < words.size(); k += 4) {
+            a += std::popcount(masked(words[k]));
+            b += std::popcount(masked(words[k + 1]));
+            c += std::popcount(masked(words[k + 2]));
+            d += std::popcount(masked(words[k + 3]));
+        }
+        return static_cast<std::uint32_t>(a + b + (c + d));
     }
 };
 
