@@ -51,12 +51,6 @@ public:
         }
     }
 
-    /// The same rule over another grid of the same frame.
-    [[nodiscard]] grain_slide over(sparse_grid const& grid) const noexcept {
-        grain_slide out = *this;
-        out.grid_ = &grid;
-        return out;
-    }
     [[nodiscard]] int baseline() const noexcept { return baseline_; }
     [[nodiscard]] std::uint64_t grain_key(voxel start) const noexcept { return key_ ^ voxel_key(start); }
 
@@ -114,7 +108,7 @@ private:
     /// One of the bits of `sides`: the same whenever the same grain stands in the same voxel before the same choice.
     [[nodiscard]] static std::uint32_t choose(std::uint64_t grain, voxel p, std::uint32_t sides) noexcept {
         std::uint64_t const h = scatter(grain ^ scatter(voxel_key(p) + 0x9E3779B97F4A7C15ULL));
-        auto const ties = static_cast<std::uint64_t>(std::popcount(sides));
+        std::uint64_t const ties = (sides & 1) + (sides >> 1 & 1) + (sides >> 2 & 1) + (sides >> 3);
         for (std::uint64_t skip = (h >> 32) * ties >> 32; skip > 0; --skip) sides &= sides - 1;
         return sides & (0U - sides);
     }
@@ -144,13 +138,12 @@ private:
         sparse_grid::brick const* const b = grid_->stored(grid_->brick_of(p));
         if (b != nullptr && in_x > 0 && in_x < 31 && in_y > 0 && in_y < 31 && p.x + 1 < nx_ && p.y + 1 < ny_) {
             std::uint32_t const* const words = b->solid.data() + sparse_grid::column_of(p);
-            std::int32_t const in_z = p.z & 31;
-            std::array<std::uint32_t, 4> const w{words[-1] << (31 - in_z), words[1] << (31 - in_z),
-                                                 words[-32] << (31 - in_z), words[32] << (31 - in_z)};
-            for (std::size_t d = 0; d < 4; ++d) {
-                n[d] = w[d] != 0 ? std::countl_zero(w[d])
-                                 : depth_below(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
-            }
+            std::int32_t const shift = 31 - (p.z & 31);
+            auto const drop = [&](std::uint32_t word, std::size_t d) {
+                word <<= shift;
+                return word != 0 ? std::countl_zero(word) : depth_below(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
+            };
+            n = {drop(words[-1], 0), drop(words[1], 1), drop(words[-32], 2), drop(words[32], 3)};
         } else {
             for (std::size_t d = 0; d < 4; ++d) n[d] = depth(p.x + sides_xy[d][0], p.y + sides_xy[d][1], p.z);
         }

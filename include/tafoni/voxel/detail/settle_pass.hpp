@@ -9,7 +9,6 @@
 #include <tafoni/voxel/voxel_change.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -57,12 +56,12 @@ namespace tafoni::detail {
 
 /// The loop in voxel order over the grains of a call.
 ///
-/// With more than one thread it goes in rounds of fixed size. Every grain of a round finds its way in parallel over
-/// a frozen copy of the grid and keeps it; then the grains are laid down one by one in order, while the ways of the
-/// next round are being found. A step of a way near which nothing has changed since it was found is as it
-/// would be found now and is skipped; any other is gone again. So the result is that of the loop, bit by
-/// bit, whatever the rounds and threads are [deterministic reservations with the check moved into the commit: Blelloch,
-/// Fineman, Gibbons, Shun 2012, Internally deterministic parallel algorithms can be fast].
+/// With more than one thread it goes in rounds of fixed size: every grain of a round finds its way over the grid as
+/// it stands before the round, in parallel, and keeps the way; then the grains are laid down one by one in order. A
+/// step of a way that no change of this round concerns is as it would be found now and is skipped; any
+/// other is gone again. So the result is that of the loop, bit by bit, whatever the rounds and threads are
+/// [deterministic reservations with the check moved into the commit: Blelloch, Fineman, Gibbons, Shun 2012, Internally
+/// deterministic parallel algorithms can be fast].
 class settle_pass {
 public:
     settle_pass(sparse_grid& grid, grain_slide const& slide) : grid_(grid), slide_(slide) {}
@@ -131,17 +130,10 @@ public:
 
 private:
     static constexpr std::size_t round_size = 512;  ///< grains whose ways are found over one state of the grid
-    static constexpr std::size_t block_size = 64;   ///< grains of a round that one thread takes at once
+    static constexpr std::size_t block_size = 32;   ///< grains of a round that one thread takes at once
     static constexpr std::size_t most_tiles = std::size_t{1} << 20;
 
     static constexpr std::uint64_t wary_bit = std::uint64_t{1} << 63;
-
-    /// The last rounds in which something changed.
-    struct touch {
-        std::uint32_t here = 0;    ///< in one of these columns
-        std::uint32_t beside = 0;  ///< in a column that can be seen from one of them, or in one of them
-        std::uint32_t lifted = 0;  ///< the same, but only what turned to air
-    };
 
     /// The ways of a block of grains: where each begins and where it stands between its moves.
     struct block_ways {
@@ -159,59 +151,30 @@ private:
     /// its way: it looks at lower ones only.
     template <class Executor, class Act>
     void in_order(std::span<voxel const> starts, Executor const& executor, Act const& act) {
-        if (executor.thread_count() < 2 || starts.size() < 4 * block_size) {
+        if (executor.thread_count() < 2 || starts.size() < 2 * block_size) {
             for (voxel const v : starts) act(v, [&](voxel& p) { return follow(p = v, v); });
             return;
         }
-        freeze();
-        round_ += 2;  // what was put down so far is in the frozen grid too
-        grain_slide const over_frozen = slide_.over(frozen_);
-        std::size_t const rounds = (starts.size() + round_size - 1) / round_size;
-        for (std::size_t r = 0; r <= rounds; ++r) {
-            std::span<voxel const> const now = r == 0 ? starts.first(0) : round_of(starts, r - 1);
-            std::span<voxel const> const next = r == rounds ? starts.first(0) : round_of(starts, r);
-            executor.for_blocks(1 + (next.size() + block_size - 1) / block_size, 1, [&](std::size_t first, std::size_t last) {
-                for (std::size_t block = first; block < last; ++block) {
-                    if (block == 0) {
-                        lay_down(now, ways_[(r + 1) % 2], act);
-                    } else {
-                        std::size_t const at = (block - 1) * block_size;
-                        find_ways(over_frozen, next.subspan(at, std::min(block_size, next.size() - at)), ways_[r % 2][block - 1]);
-                    }
-                }
+        prepare_rounds();
+        for (std::size_t begin = 0; begin < starts.size(); begin += round_size) {
+            std::span<voxel const> const round = starts.subspan(begin, std::min(round_size, starts.size() - begin));
+            executor.for_blocks(round.size(), block_size, [&](std::size_t first, std::size_t last) {
+                find_ways(round.subspan(first, last - first), ways_[first / block_size]);
             });
-            freeze();
             ++round_;
-        }
-    }
-
-    [[nodiscard]] static std::span<voxel const> round_of(std::span<voxel const> starts, std::size_t r) noexcept {
-        return starts.subspan(r * round_size, std::min(round_size, starts.size() - r * round_size));
-    }
-
-    /// Brings the frozen grid up to date. O(bricks) the first time, then O(puts since).
-    void freeze() {
-        if (touched_.empty()) {
-            auto const tiles = [this](std::size_t axis) { return (grid_.size()[axis] >> tile_bits_) + 1; };
-            while (tiles(0) * tiles(1) > most_tiles) ++tile_bits_;
-            tiles_x_ = tiles(0);
-            touched_.assign(tiles(0) * tiles(1), {});
-            for (auto& w : ways_) w.resize(round_size / block_size);
-            frozen_ = grid_;
-        } else {
-            for (; frozen_puts_ < puts_.size(); ++frozen_puts_) {
-                voxel const v = voxel_of_key(puts_[frozen_puts_]);
-                frozen_.set(v, grid_.state(v));
+            for (std::size_t i = 0; i < round.size(); ++i) {
+                act(round[i], [&](voxel& p) { return follow_again(p, round[i], ways_[i / block_size], i % block_size); });
             }
         }
-        frozen_puts_ = puts_.size();
     }
 
-    template <class Act>
-    void lay_down(std::span<voxel const> round, std::vector<block_ways> const& ways, Act const& act) {
-        for (std::size_t i = 0; i < round.size(); ++i) {
-            act(round[i], [&](voxel& p) { return follow_again(p, round[i], ways[i / block_size], i % block_size); });
-        }
+    void prepare_rounds() {
+        if (!here_.empty()) return;
+        auto const tiles = [this](std::size_t axis) { return (grid_.size()[axis] >> tile_bits_) + 1; };
+        while (tiles(0) * tiles(1) > most_tiles) ++tile_bits_;
+        tiles_x_ = tiles(0);
+        for (auto* stamps : {&here_, &beside_, &lifted_}) stamps->assign(tiles(0) * tiles(1), 0);
+        ways_.resize(round_size / block_size);
     }
 
     [[nodiscard]] bool follow(voxel& p, voxel start) const noexcept {
@@ -223,18 +186,18 @@ private:
         }
     }
 
-    static void find_ways(grain_slide const& slide, std::span<voxel const> starts, block_ways& out) {
+    void find_ways(std::span<voxel const> starts, block_ways& out) const {
         out.keys.clear();
         out.ends.clear();
         for (voxel const v : starts) {
             voxel p = v;
-            std::uint64_t const key = slide.grain_key(v);
+            std::uint64_t const key = slide_.grain_key(v);
             out.keys.push_back(voxel_key(p));
-            grain_slide::step s = slide.fall(p);
+            grain_slide::step s = slide_.fall(p);
             if (s == grain_slide::step::moves) out.keys.push_back(voxel_key(p));
             while (s != grain_slide::step::leaves) {
                 bool wary = false;
-                s = slide.slide(p, key, wary);
+                s = slide_.slide(p, key, wary);
                 if (wary) out.keys.back() |= wary_bit;
                 if (s != grain_slide::step::moves) break;
                 out.keys.push_back(voxel_key(p));
@@ -293,13 +256,17 @@ private:
         return out;
     }
 
-    /// Whether no change since the ways of this round were found can matter to a move from a place to the next.
-    /// They were found over the grid as it was before the round before this.
+    /// Whether no change of this round can matter to a grain's move from a place to the next.
     [[nodiscard]] bool holds(std::uint64_t from, std::uint64_t to) const noexcept {
-        touch const& t = touched_[tile_of(voxel_of_key(from))];
-        std::uint32_t const found = round_ - 1;
-        return t.lifted < found && ((from & wary_bit) == 0 || t.beside < found) &&
-               touched_[tile_of(voxel_of_key(to))].here < found;
+        if (here_[tile_of_key(to)] == round_) return false;
+        bool const wary = (from & wary_bit) != 0;
+        if (!wary && !any_lifted_) return true;
+        std::size_t const tile = tile_of_key(from);
+        return lifted_[tile] != round_ && !(wary && beside_[tile] == round_);
+    }
+    [[nodiscard]] std::size_t tile_of_key(std::uint64_t key) const noexcept {
+        constexpr std::uint64_t mask = (std::uint64_t{1} << 20) - 1;
+        return ((key & mask) >> tile_bits_) + tiles_x_ * ((key >> 20 & mask) >> tile_bits_);
     }
     [[nodiscard]] std::size_t tile_of(voxel v) const noexcept {
         return static_cast<std::size_t>(v.x >> tile_bits_) + tiles_x_ * static_cast<std::size_t>(v.y >> tile_bits_);
@@ -308,18 +275,19 @@ private:
     void put(voxel v, voxel_state s) {
         grid_.set(v, s);
         puts_.push_back(voxel_key(v));
-        if (touched_.empty()) return;
-        touched_[tile_of(v)].here = round_;
+        any_lifted_ = any_lifted_ || s == voxel_state::air;
+        if (here_.empty()) return;
+        here_[tile_of(v)] = round_;
         // Whoever stands up to a baseline away along an axis has looked at this column.
+        auto const touch = [&](voxel c) {
+            beside_[tile_of(c)] = round_;
+            if (s == voxel_state::air) lifted_[tile_of(c)] = round_;
+        };
         std::int32_t const reach = slide_.baseline();
-        for (std::int32_t k = -reach; k <= reach; ++k) {
-            for (voxel const c : {voxel{v.x + k, v.y, v.z}, voxel{v.x, v.y + k, v.z}}) {
-                if (!grid_.contains(c)) continue;
-                touch& t = touched_[tile_of(c)];
-                t.beside = round_;
-                if (s == voxel_state::air) t.lifted = round_;
-            }
-        }
+        auto const nx = static_cast<std::int32_t>(grid_.size()[0]);
+        auto const ny = static_cast<std::int32_t>(grid_.size()[1]);
+        for (std::int32_t x = std::max(0, v.x - reach); x <= std::min(nx - 1, v.x + reach); ++x) touch({x, v.y, v.z});
+        for (std::int32_t y = std::max(0, v.y - reach); y <= std::min(ny - 1, v.y + reach); ++y) touch({v.x, y, v.z});
     }
 
     /// Colluvium that may have stood because `v` was not air: the voxel above it, and what looks into or
@@ -363,13 +331,16 @@ private:
     sparse_grid& grid_;
     grain_slide slide_;
     std::vector<std::uint64_t> puts_{};
-    std::array<std::vector<block_ways>, 2> ways_{};  ///< of the round that is laid down, and of the next
-    sparse_grid frozen_{};
-    std::size_t frozen_puts_ = 0;  ///< how many of `puts_` it holds
-    std::vector<touch> touched_{};  ///< per tile
+    std::vector<block_ways> ways_{};
+    // Per tile the last round in which something changed: in one of its columns; in a column that can be seen from
+    // one of them, or in one of them; the same, but only what turned to air.
+    std::vector<std::uint32_t> here_{};
+    std::vector<std::uint32_t> beside_{};
+    std::vector<std::uint32_t> lifted_{};
+    bool any_lifted_ = false;
     std::size_t tiles_x_ = 0;
     int tile_bits_ = 0;  ///< a tile is a square of 2^bits columns; single ones unless the grid is very wide
-    std::uint32_t round_ = 1;
+    std::uint32_t round_ = 0;
 };
 
 }  // namespace tafoni::detail
