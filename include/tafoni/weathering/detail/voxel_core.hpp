@@ -6,37 +6,25 @@
 #include <tafoni/core/executor.hpp>
 #include <tafoni/voxel/colluvium.hpp>
 #include <tafoni/voxel/rockfall.hpp>
+#include <tafoni/weathering/detail/ask_policies.hpp>
 #include <tafoni/weathering/detail/grid_hash.hpp>
+#include <tafoni/weathering/detail/lap_clock.hpp>
+#include <tafoni/weathering/detail/sort_changes.hpp>
 #include <tafoni/weathering/detail/voxel_rates.hpp>
 #include <tafoni/weathering/detail/voxel_skins.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <queue>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace tafoni::detail {
-
-/// Seconds, lap by lap.
-class lap_clock {
-public:
-    void into(double& sum) noexcept {
-        auto const t = std::chrono::steady_clock::now();
-        sum += std::chrono::duration<double>(t - last_).count();
-        last_ = t;
-    }
-
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// What a step changes before its last lines, which cannot throw, is undone when anything throws: the state is
 /// then that after the last complete step (with events: after the last complete event).
@@ -113,7 +101,7 @@ public:
                 list_fallers(s);
             }
         });
-        take_fallers();
+        take_fallers(threads);
         change(threads, clock, [] {});
         skins.turn();
         finish(clock);
@@ -139,7 +127,7 @@ public:
                         if (falls_at(skin, i) == at) fallers_[f.slot].push_back(skin.position[i]);
                     }
                 }
-                take_fallers();
+                take_fallers(threads);
                 if (changes_.empty()) continue;
                 change(threads, clock, [&] {
                     for (std::uint32_t const s : skins.touched()) advance(skins[s], at);
@@ -164,25 +152,7 @@ public:
     [[nodiscard]] std::span<bubble_stencil const> stencils() const { return process.bubbles.stencils(); }
 
     /// What the policies say of a place: the bubble and the durability.
-    [[nodiscard]] std::pair<std::uint16_t, double> ask(vec3 const& at) const {
-        std::size_t const n = stencils().size();
-        std::size_t const chosen = process.bubbles.choose(at);
-        if (chosen >= n) {
-            fail<invalid_input>(errc::index_out_of_range,
-                                "voxel_weathering.bubbles: choose() answered " + std::to_string(chosen) + " of " +
-                                    std::to_string(n) + " stencils",
-                                {.kind = entity::parameter, .value = static_cast<double>(chosen),
-                                 .limit = static_cast<double>(n)});
-        }
-        double const d = process.durability(at);
-        if (!(d >= -1e300 && d <= 1e300)) {
-            fail<invalid_input>(errc::bad_parameter,
-                                "voxel_weathering.durability: got " + number_text(d) + " at (" + number_text(at[0]) +
-                                    ", " + number_text(at[1]) + ", " + number_text(at[2]) + "), need a finite number",
-                                {.kind = entity::parameter, .value = d});
-        }
-        return {static_cast<std::uint16_t>(chosen), std::max(d, Process::least_durability)};
-    }
+    [[nodiscard]] std::pair<std::uint16_t, double> ask(vec3 const& at) const { return ask_policies(process, at); }
     /// What is left of a voxel that is not skin, per cent.
     [[nodiscard]] double covered_left(voxel v) const noexcept {
         if (!grid.contains(v) || skins.slot_of(grid.brick_of(v)) == voxel_skins::none) return 100;
@@ -246,18 +216,44 @@ private:
             if (left[i] <= 0) fallers_[s].push_back(skin.position[i]);
         }
     }
-    void take_fallers() {
-        changes_.clear();
+    /// Lists the fallers as changes; in voxel order where rockfall or settling ask for it.
+    template <executor Executor>
+    void take_fallers(Executor const& threads) {
+        first_of_.resize(fallers_.size() + 1);
+        std::size_t n = 0;
         for (std::size_t s = 0; s < fallers_.size(); ++s) {
-            if (fallers_[s].empty()) continue;
-            voxel const corner = grid.brick_corner(skins.brick(s));
-            grid.make_mixed(skins.brick(s));
-            for (brick_position const p : fallers_[s]) {
-                voxel const v = at_position(corner, p);
-                changes_.push_back({v, grid.state(v), voxel_state::air});
-            }
+            first_of_[s] = n;
+            n += fallers_[s].size();
+            if (!fallers_[s].empty()) grid.make_mixed(skins.brick(s));
         }
-        if (options.colluvium || options.rockfall) std::sort(changes_.begin(), changes_.end(), by_place);
+        changes_.resize(n);
+        if (n == 0) return;
+        threads.for_blocks(fallers_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t s = begin; s < end; ++s) {
+                voxel const corner = grid.brick_corner(skins.brick(s));
+                voxel_change* to = changes_.data() + first_of_[s];
+                for (brick_position const p : fallers_[s]) {
+                    bool const loose = (grid.colluvium_word(skins.brick(s), p >> 5) >> (p & 31) & 1) != 0;
+                    *to++ = {at_position(corner, p), loose ? voxel_state::colluvium : voxel_state::rock, voxel_state::air};
+                }
+            }
+        });
+        if (options.colluvium || options.rockfall) sort_changes(changes_, merged_, grid.size()[2], threads);
+    }
+    /// Takes the fallers out of the grid.
+    template <executor Executor>
+    void remove_fallers(Executor const& threads) {
+        threads.for_blocks(fallers_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t s = begin; s < end; ++s) {
+                if (fallers_[s].empty()) continue;
+                sparse_grid::brick& brick = grid.make_mixed(skins.brick(s));  // stored already
+                for (brick_position const p : fallers_[s]) {
+                    std::uint32_t const others = ~(std::uint32_t{1} << (p & 31));
+                    brick.solid[p >> 5] &= others;
+                    brick.colluvium[p >> 5] &= others;
+                }
+            }
+        });
     }
 
     /// Removes what is in `changes_`, lets rock fall and grains settle, and makes the skin anew aside.
@@ -265,11 +261,10 @@ private:
     void change(Executor const& threads, lap_clock& clock, Prepare const& prepare) {
         next_ = count;
         fallen_.clear();
-        bool const more = options.colluvium || options.rockfall;
-        if (more && !spare_) spare_.emplace(grid);
+        keep_spare(threads);
         try {
+            remove_fallers(threads);
             for (voxel_change const& c : changes_) {
-                grid.set(c.at, c.after);
                 if (!options.colluvium || c.before == voxel_state::colluvium) ++next_.voxels_vanished;
             }
             clock.into(taken.weather);
@@ -295,9 +290,6 @@ private:
             skins.touch_changed(grid, changes_, options.skin_depth, reach);
             prepare();
             skins.rebuild(grid, stencils(), options.skin_depth, asker(), voxel_skins::basis::next, threads);
-            if (more) {
-                for (voxel_change const& c : changes_) spare_->make_mixed(spare_->brick_of(c.at));
-            }
         } catch (...) {
             undo();
             throw;
@@ -310,11 +302,12 @@ private:
         for (voxel_change const& c : changes_) {
             if (c.before == voxel_state::rock) removed_.push_back(c.at);
         }
+        std::size_t const before = changes_.size();
         fallen_ = falls_->fall(grid, removed_, count.steps + 1, threads, changes_);
         for (fallen_block const& b : fallen_) next_.voxels_fallen += b.voxels.size();
         next_.blocks += fallen_.size();
         first_fall_ = false;
-        net_changes();
+        merge_changes(changes_, before, merged_);
     }
     template <executor Executor>
     void let_grains_settle(Executor const& threads) {
@@ -324,20 +317,32 @@ private:
         settle_report const settled =
             settle(grid, released_, removed_, *options.colluvium, options.seed, count.steps, threads, changes_);
         next_.voxels_left += settled.left;
-        net_changes();
+        merge_changes(changes_, removed_.size(), merged_);
     }
-    /// One entry for every voxel that anything happened to, in voxel order: first before, last after.
-    void net_changes() {
-        std::stable_sort(changes_.begin(), changes_.end(), by_place);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < changes_.size(); ++i) {
-            if (kept > 0 && changes_[kept - 1].at == changes_[i].at) {
-                changes_[kept - 1].after = changes_[i].after;
-            } else {
-                changes_[kept++] = changes_[i];
-            }
+    /// Makes the spare grid equal to the grid, before anything else happens to that.
+    template <executor Executor>
+    void keep_spare(Executor const& threads) {
+        if (!options.colluvium && !options.rockfall) {
+            spare_.reset();
+        } else if (!spare_) {
+            spare_.emplace(grid);
+        } else if (stale_) {
+            for (std::uint32_t const s : skins.touched()) spare_->make_mixed(skins.brick(s));
+            threads.for_blocks(skins.touched().size(), 16, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    std::size_t const b = skins.brick(skins.touched()[k]);
+                    sparse_grid::brick& to = spare_->make_mixed(b);
+                    if (auto const* from = grid.stored(b)) {
+                        to = *from;
+                        continue;
+                    }
+                    for (std::size_t c = 0; c < 1024; ++c) to.solid[c] = grid.solid_word(b, c);
+                    to.colluvium.fill(0);
+                }
+            });
+            for (std::uint32_t const s : skins.touched()) spare_->compact(skins.brick(s));
         }
-        changes_.resize(kept);
+        stale_ = false;
     }
     void undo() noexcept {
         if (!spare_) {
@@ -354,19 +359,12 @@ private:
         for (fallen_block& b : fallen_) blocks.push_back(std::move(b));
         count = next_;
         count.surface_voxels += static_cast<std::uint64_t>(skins.commit());
-        if (spare_) {
-            for (voxel_change const& c : changes_) spare_->set(c.at, c.after);
-        }
+        stale_ = true;
         clock.into(taken.notify);
     }
     void compact() {
-        for (std::uint32_t const s : skins.touched()) {
-            grid.compact(skins.brick(s));
-            if (spare_) spare_->compact(skins.brick(s));
-        }
+        for (std::uint32_t const s : skins.touched()) grid.compact(skins.brick(s));
     }
-
-    static bool by_place(voxel_change const& a, voxel_change const& b) noexcept { return a.at < b.at; }
 
     [[nodiscard]] auto asker() const {
         return [this](vec3 const& at) { return ask(at); };
@@ -375,8 +373,11 @@ private:
     std::optional<rockfall> falls_{};
     bool first_fall_ = true;
     std::optional<sparse_grid> spare_{};  ///< the grid after the last step, where more than removal may throw
+    bool stale_ = false;                  ///< it lacks what happened to the bricks touched last
     std::vector<std::vector<brick_position>> fallers_{};  ///< by slot
+    std::vector<std::size_t> first_of_{};                 ///< by slot: among the changes
     std::vector<voxel_change> changes_{};
+    std::vector<voxel_change> merged_{};
     std::vector<voxel> released_{};
     std::vector<voxel> removed_{};
     std::vector<fallen_block> fallen_{};

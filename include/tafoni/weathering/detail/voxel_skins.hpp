@@ -263,7 +263,7 @@ private:
     /// The counts of what was skin before are brought up to date by the changes, or all are made anew.
     static void count(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> stencils,
                       std::span<voxel_change const> changes, voxel_skin& fresh, scratch& my) {
-        if (my.added.size() == fresh.size() || air_counter::recount_is_cheaper(fresh.size(), changes.size())) {
+        if (my.added.size() == fresh.size() || my.counter.recount_is_cheaper(stencils, fresh.view(), changes.size())) {
             my.counter.recount(grid, brick, stencils, fresh.view());
             return;
         }
