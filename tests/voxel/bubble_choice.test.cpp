@@ -1,4 +1,5 @@
 #include <tafoni/field/ramp.hpp>
+#include <tafoni/testing/bubble_archetypes.hpp>
 #include <tafoni/testing/bubble_laws.hpp>
 #include <tafoni/voxel/bubble_mixture.hpp>
 #include <tafoni/voxel/bubble_profile.hpp>
@@ -20,16 +21,6 @@ struct along_x {
     double operator()(vec3 const& p) const { return p[0]; }
 };
 
-/// The least type that satisfies the concept.
-struct least_choice {
-    explicit least_choice(int) {}
-    least_choice(least_choice const&) = default;
-    least_choice& operator=(least_choice const&) = delete;
-    [[nodiscard]] std::span<bubble_stencil const> stencils() const { return {&one, 1}; }
-    [[nodiscard]] std::size_t choose(vec3 const&) const { return 0; }
-    bubble_stencil one = sphere_bubble{};
-};
-
 }  // namespace
 
 TEST_CASE("shipped choices keep the laws of choices") {
@@ -40,7 +31,7 @@ TEST_CASE("shipped choices keep the laws of choices") {
     CHECK(laws::bubble_choice(bubble_profile{.bubbles = {sphere_bubble{3}, disc_bubble{.radius = 4}},
                                              .layers = {{.top = -1, .mix = {1}}, {.top = 2, .mix = {0, 1}}, {.mix = {0}}}})
               .empty());
-    CHECK(laws::bubble_choice(least_choice(1)).empty());
+    CHECK(laws::bubble_choice(archetypes::bubble_choice(1)).empty());
 }
 
 TEST_CASE("laws::bubble_choice names what a broken choice breaks") {

@@ -1,3 +1,4 @@
+#include <tafoni/testing/bubble_archetypes.hpp>
 #include <tafoni/testing/bubble_laws.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
 #include <tafoni/voxel/bubble_stencil.hpp>
@@ -15,15 +16,6 @@ namespace {
 double const not_a_number = std::numeric_limits<double>::quiet_NaN();
 double const inf = std::numeric_limits<double>::infinity();
 
-/// The least type that satisfies the concept.
-struct least_bubble {
-    explicit least_bubble(int) {}
-    least_bubble(least_bubble const&) = default;
-    least_bubble& operator=(least_bubble const&) = delete;
-    [[nodiscard]] bool contains(vec3 const& o) const { return o[0] == 2 && o[1] * o[1] < 9 && o[2] * o[2] < 9; }
-    [[nodiscard]] double reach() const { return 2; }
-};
-
 }  // namespace
 
 TEST_CASE("shipped bubbles keep the laws of bubbles") {
@@ -36,8 +28,8 @@ TEST_CASE("shipped bubbles keep the laws of bubbles") {
         CHECK(laws::bubble_shape(disc_bubble{.radius = 2, .thickness = r}).empty());
         CHECK(laws::bubble_shape(predicate_bubble{[r](vec3 const& o) { return o[0] + o[1] < r; }, r}).empty());
     }
-    CHECK(laws::bubble_shape(least_bubble(1)).empty());
-    CHECK(bubble_stencil(least_bubble(1)).size() == 25);
+    CHECK(laws::bubble_shape(archetypes::bubble(1)).empty());
+    CHECK(bubble_stencil(archetypes::bubble(1)).size() == 25);
 }
 
 TEST_CASE("laws::bubble_shape names what a broken bubble breaks") {

@@ -9,6 +9,7 @@
 #include <tafoni/graph/concepts.hpp>
 #include <tafoni/percolation/concepts.hpp>
 #include <tafoni/rules/concepts.hpp>
+#include <tafoni/testing/bubble_archetypes.hpp>
 #include <tafoni/testing/structure_archetypes.hpp>
 #include <tafoni/testing/voxel_archetypes.hpp>
 

@@ -3,6 +3,7 @@
 #ifndef TAFONI_TESTING_LAWS_HPP
 #define TAFONI_TESTING_LAWS_HPP
 
+#include <tafoni/testing/bubble_laws.hpp>
 #include <tafoni/testing/curvature_laws.hpp>
 #include <tafoni/testing/mesh_laws.hpp>
 #include <tafoni/testing/policy_laws.hpp>

@@ -105,8 +105,8 @@ public:
     }
 
     /// By measured costs in half nanoseconds. With AVX-512 they meet where 7 %, 4 %, 2 %, 2 % of a column's surface
-    /// change in a step (bubbles of radius 3, 5, 7, 12), or where changes within reach of a brick number 0.10, 0.06, 0.045,
-    /// 0.075 of its records. O(records) for several bubbles, else O(1).
+    /// change in a step (bubbles of radius 3, 5, 7, 12), or where changes within reach of a brick number 0.10, 0.06,
+    /// 0.045, 0.075 of its records. O(records) for several bubbles, else O(1).
     [[nodiscard]] bool recount_is_cheaper(std::span<bubble_stencil const> bubbles, skin_view const& skin,
                                           std::size_t changes) {
         std::size_t const n = skin.position.size();
