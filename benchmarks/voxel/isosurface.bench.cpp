@@ -1,6 +1,7 @@
 // Surfaces: marching cubes on samples (OpenVDB in the same binary where found) and on the bits of a grid.
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/field/noise.hpp>
+#include <tafoni/voxel/dual_surface.hpp>
 #include <tafoni/voxel/isosurface.hpp>
 #include <tafoni/voxel/voxel_surface.hpp>
 
@@ -108,6 +109,19 @@ void openvdb_dense(benchmark::State& state) {
 }
 BENCHMARK(openvdb_dense)->Name("voxel/isosurface/openvdb/float/n")->Arg(128)->Arg(256)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 #endif
+
+void tafoni_dual(benchmark::State& state) {
+    auto const n = static_cast<std::size_t>(state.range(0));
+    auto const& s = samples<double>(n);
+    grid_frame const nodes{.size = {n, n, n}};
+    auto const field = [f = grid_field<double>{.samples = s, .size = nodes.size, .origin = nodes.centre({0, 0, 0})}](vec3 const& p) { return f(p); };
+    for (auto _ : state) {
+        auto const mesh = dual_surface(field, nodes, 0.0);
+        benchmark::DoNotOptimize(mesh.corners.data());
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(n * n * n));
+}
+BENCHMARK(tafoni_dual)->Name("voxel/dual_surface/tafoni/double/n")->Arg(128)->Unit(benchmark::kMillisecond);
 
 /// A head on a neck with a bumpy skin, and a heap of colluvium at its foot.
 sparse_grid bust(std::size_t height) {

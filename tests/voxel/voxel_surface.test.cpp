@@ -184,6 +184,16 @@ void check_laws(small_grid const& g, int smoothing) {
     }
     REQUIRE(above == below);
     if (smoothing == 0) REQUIRE(std::set<placed>(above.begin(), above.end()).size() == above.size());
+    for (voxel_mesh const* m : {&s.rock, &s.colluvium}) {
+        for (vec3 const& p : m->mesh.positions) {
+            int on_planes = 0;
+            for (Eigen::Index a = 0; a < 3; ++a) {
+                if (smoothing == 0) REQUIRE(2 * p[a] == std::floor(2 * p[a]));
+                on_planes += p[a] == std::floor(p[a]) ? 1 : 0;
+            }
+            if (smoothing == 0) REQUIRE(on_planes == 1);  // in the middle between two voxels' centres
+        }
+    }
     for (voxel const v : s.rock.vertex_voxel) REQUIRE(grid.state(v) == voxel_state::rock);
     for (voxel const v : s.colluvium.vertex_voxel) REQUIRE(grid.is_solid(v));
 }

@@ -34,6 +34,16 @@ struct dual_surface_options {
 
 namespace detail {
 
+template <std::size_t Solid>
+inline constexpr surface_loops one_surface_loops = surface_case_rule::loops(static_cast<unsigned>(Solid));
+
+template <std::size_t... Solid>
+constexpr std::array<surface_loops, 256> all_surface_loops(std::index_sequence<Solid...>) {
+    return {one_surface_loops<Solid>...};
+}
+
+inline constexpr std::array<surface_loops, 256> surface_loop_cases = all_surface_loops(std::make_index_sequence<256>{});
+
 /// The loops of a surface as polygons over the edges that it crosses.
 struct loop_slab {
     struct crossing {
@@ -52,7 +62,7 @@ struct loop_slab {
         crossings.push_back({narrow(node), static_cast<std::uint8_t>(axis)});
     }
     void add_cell(unsigned solid, std::array<std::uint32_t const*, 12> const& edge, std::array<std::size_t, 3> const& node) {
-        surface_loops const found = surface_case_rule::loops(solid);
+        surface_loops const& found = surface_loop_cases[solid];
         for (std::size_t l = 0; l < found.count; ++l) {
             for (std::size_t k = found.first[l]; k < found.first[l + 1]; ++k) {
                 corners.push_back(edge[found.edges[k]][node[0]]);
@@ -180,8 +190,9 @@ struct dual_surface_fn {
         std::vector<vec3> vertices(loops.cells.size());
         vec3 const first = node(at, {0, 0, 0});
         vec3 const last = node(at, at.size);
+        feature_point corner;
         for (std::size_t l = 0; l < vertices.size(); ++l) {
-            feature_point corner;
+            corner.clear();
             for (std::size_t c = loops.offsets[l]; c < loops.offsets[l + 1]; ++c) {
                 std::uint32_t const v = loops.corners[c];
                 corner.add(points[v], normals.empty() ? vec3{0, 0, 0} : normals[v]);

@@ -49,8 +49,8 @@ struct voxel_surface {
 };
 
 struct voxel_surface_options {
-    /// Rounds in which every vertex moves to the mean of itself and its neighbours, 0 .. 1000. With 0 vertices stay
-    /// in the middle between two voxels.
+    /// Rounds in which every vertex moves to the mean of itself and its neighbours, 0 .. 1000, on the grid's sides
+    /// as well. With 0 vertices stay in the middle between two voxels.
     int smoothing = 1;
 
     /// \throws invalid_input  bad_parameter
@@ -275,25 +275,29 @@ private:
 
     void finish_rock(surface_places const& places) {
         voxel_mesh& m = out_.rock;
-        std::size_t const triangles = m.triangle_face.size();
-        m.triangle_voxel.resize(triangles);
-        for (std::size_t t = 0; t < triangles; ++t) {
-            m.triangle_face[t] = outside(m.triangle_face[t], rock_.data() + 3 * t);
-            m.triangle_voxel[t] = edges_[rock_[3 * t]].stands_for(voxel_state::rock);
-        }
+        m.triangle_voxel.resize(m.triangle_face.size());
         std::vector<std::uint32_t> name(edges_.size(), 0);
         std::uint32_t used = 0;
         for (std::size_t v = 0; v < edges_.size(); ++v) {
-            if (edges_[v].has(voxel_state::rock)) name[v] = used++;
+            name[v] = used;
+            used += edges_[v].has(voxel_state::rock) ? 1U : 0U;
         }
-        m.mesh.positions.reserve(used);
-        m.vertex_voxel.reserve(used);
-        for (std::size_t v = 0; v < edges_.size(); ++v) {
-            if (!edges_[v].has(voxel_state::rock)) continue;
-            m.mesh.positions.push_back(places.in_user_space(grid_, v));
-            m.vertex_voxel.push_back(edges_[v].stands_for(voxel_state::rock));
-        }
-        for (std::uint32_t& c : rock_) c = name[c];
+        m.mesh.positions.resize(used);
+        m.vertex_voxel.resize(used);
+        exec_.for_blocks(edges_.size(), 8192, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                if (!edges_[v].has(voxel_state::rock)) continue;
+                m.mesh.positions[name[v]] = places.in_user_space(grid_, v);
+                m.vertex_voxel[name[v]] = edges_[v].stands_for(voxel_state::rock);
+            }
+        });
+        exec_.for_blocks(m.triangle_face.size(), 8192, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                m.triangle_face[t] = outside(m.triangle_face[t], rock_.data() + 3 * t);
+                m.triangle_voxel[t] = edges_[rock_[3 * t]].stands_for(voxel_state::rock);
+                for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) rock_[c] = name[rock_[c]];
+            }
+        });
         set_triangles(m.mesh, std::move(rock_));
     }
 

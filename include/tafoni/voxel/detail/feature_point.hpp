@@ -16,6 +16,10 @@ namespace tafoni::detail {
 /// [Lindstrom 2000]. Planes whose common direction weighs less than 1/100 of the heaviest count as parallel.
 class feature_point {
 public:
+    void clear() noexcept {
+        points_.clear();
+        normals_.clear();
+    }
     void add(vec3 const& point, vec3 const& unit_normal) {
         points_.push_back(point);
         normals_.push_back(unit_normal);
