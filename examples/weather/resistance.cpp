@@ -85,7 +85,8 @@ any_field make_grid(spec& s, solid const& body) {
     auto const volume = std::make_shared<nrrd_volume const>(read_nrrd(path));
     vec3 const extent = body.bounds.extent();
     grid_field<float> field{.samples = volume->samples, .size = volume->size, .origin = volume->origin, .spacing = volume->spacing};
-    if (!volume->placed || s.word("place", "file") == "fit") {
+    bool const fit = s.word("place", "file") == "fit";
+    if (fit || !volume->placed) {
         field.origin = body.bounds.lo;
         for (int a = 0; a < 3; ++a) {
             field.spacing[a] = extent[a] / static_cast<double>(std::max<std::size_t>(volume->size[static_cast<std::size_t>(a)], 2) - 1);

@@ -3,7 +3,6 @@
 #include "nrrd.hpp"
 #include "spec.hpp"
 
-#include <tafoni/core/random.hpp>
 #include <tafoni/field/durability_profile.hpp>
 #include <tafoni/field/fractal_noise.hpp>
 #include <tafoni/field/grid_field.hpp>
@@ -57,7 +56,8 @@ any_field grid_durability(spec& s, box3 const& bounds) {
     if (path.empty()) s.fail("path: a .nrrd file is needed");
     auto const volume = std::make_shared<nrrd_volume const>(read_nrrd(path));
     grid_field<float> field{.samples = volume->samples, .size = volume->size, .origin = volume->origin, .spacing = volume->spacing};
-    if (!volume->placed || s.word("place", "file") == "fit") {
+    bool const fit = s.word("place", "file") == "fit";
+    if (fit || !volume->placed) {
         field.origin = bounds.lo;
         for (int a = 0; a < 3; ++a) {
             field.spacing[a] = bounds.extent()[a] / static_cast<double>(std::max<std::size_t>(volume->size[static_cast<std::size_t>(a)], 2) - 1);
@@ -71,21 +71,10 @@ any_field grid_durability(spec& s, box3 const& bounds) {
     return [volume, scaled](vec3 const& p) { return scaled(p); };
 }
 
-any_durability probed(durability_profile<any_field> profile, box3 const& bounds, std::uint64_t seed) {
-    any_durability out{.f = std::move(profile)};
-    stream random(seed, stage::user, std::uint64_t{1} << 41);
-    for (int i = 0; i < 64; ++i) {
-        vec3 p;
-        for (int a = 0; a < 3; ++a) p[a] = random.uniform(bounds.lo[a], bounds.hi[a]);
-        out.probes.push_back(out.f(p));
-    }
-    return out;
-}
-
 }  // namespace
 
-any_durability make_durability(std::string const& text, std::string const& noise, height_range const& rock,
-                               box3 const& bounds, std::uint64_t seed) {
+any_field make_durability(std::string const& text, std::string const& noise, height_range const& rock,
+                          box3 const& bounds, std::uint64_t seed) {
     any_field extra = [](vec3 const&) { return 0.0; };
     if (!noise.empty()) {
         spec s = spec::parse("--noise", noise);
@@ -103,7 +92,7 @@ any_durability make_durability(std::string const& text, std::string const& noise
         durability_table table = read_durability(std::filesystem::path(text));
         profile.points = table.relative ? scaled_durability(std::move(table.points), rock.bottom, rock.top) : std::move(table.points);
         profile.validate();
-        return probed(std::move(profile), bounds, seed);
+        return profile;
     }
     spec s = spec::parse("--durability", text);
     if (s.name() == "constant") {
@@ -119,7 +108,7 @@ any_durability make_durability(std::string const& text, std::string const& noise
     }
     s.done();
     profile.validate();
-    return probed(std::move(profile), bounds, seed);
+    return profile;
 }
 
 }  // namespace weather

@@ -5,18 +5,9 @@
 
 namespace weather {
 
-/// A field, and what it answers at some points, by which a checkpoint knows it again.
-struct any_durability {
-    any_field f = [](tafoni::vec3 const&) { return 1.0; };
-    std::vector<double> probes{};
-
-    double operator()(tafoni::vec3 const& p) const { return f(p); }
-    [[nodiscard]] std::vector<double> const& parameters() const { return probes; }
-};
-
 /// A field in steps per per cent of a voxel at a rate of 1; never below 1e-3. `text` is a SPEC (constant, profile,
 /// layers, grid) or the name of a file that `read_durability` reads; `noise` is empty or a SPEC.
-any_durability make_durability(std::string const& text, std::string const& noise, height_range const& rock,
-                               tafoni::box3 const& bounds, std::uint64_t seed);
+any_field make_durability(std::string const& text, std::string const& noise, height_range const& rock,
+                          tafoni::box3 const& bounds, std::uint64_t seed);
 
 }  // namespace weather

@@ -4,6 +4,7 @@
 #include "read_png.hpp"
 #include "spec.hpp"
 
+#include <tafoni/geometry/repair_solid.hpp>
 #include <tafoni/io/esri_ascii.hpp>
 #include <tafoni/io/fill_from_vox.hpp>
 #include <tafoni/io/read_mesh.hpp>
@@ -12,6 +13,7 @@
 #include <tafoni/io/read_vox.hpp>
 #include <tafoni/voxel/fill_from_heights.hpp>
 #include <tafoni/voxel/fill_from_image.hpp>
+#include <tafoni/voxel/fill_from_mesh.hpp>
 #include <tafoni/voxel/fill_from_predicate.hpp>
 #include <tafoni/voxel/fill_from_solid.hpp>
 #include <tafoni/voxel/frame_for.hpp>
@@ -201,6 +203,27 @@ void load_solid(voxel_source& source, voxel_arguments const& a, solid&& body) {
     voxelise_by(source, a, [body = std::make_shared<solid const>(std::move(body))](sparse_grid& grid) { fill_from_solid(grid, *body); });
 }
 
+/// A solid, or a surface with holes, which is filled by its winding number and told with their count.
+void load_mesh(voxel_source& source, voxel_arguments const& a) {
+    auto const file = std::make_shared<mesh_file const>(read_mesh(std::filesystem::path(a.input)));
+    try {
+        repaired_solid r = repair_solid(file->mesh, {.orient = true});
+        source.repaired = {{"turned_faces", r.report.turned_faces.size()}, {"holes", 0}};
+        load_solid(source, a, std::move(r.body));
+        return;
+    } catch (bad_topology const& e) {
+        if (e.code() != errc::not_closed) throw;
+    }
+    sparse_grid probe(grid_frame{.size = {1, 1, 1}});
+    mesh_fill_report const report = fill_from_mesh(probe, file->mesh);
+    if (!(report.volume > 0)) {
+        detail::fail<bad_topology>(errc::zero_volume, a.input + ": the surface encloses no volume", {.kind = entity::file, .file = a.input});
+    }
+    source.repaired = {{"turned_faces", 0}, {"holes", report.holes}, {"open_edges", report.boundary_edges}};
+    for (vec3 const& p : file->mesh.positions) source.bounds.include(p);
+    voxelise_by(source, a, [file](sparse_grid& grid) { fill_from_mesh(grid, file->mesh); });
+}
+
 }  // namespace
 
 height_range voxel_source::heights() const {
@@ -229,10 +252,12 @@ voxel_source load_voxels(voxel_arguments const& a) {
         load_volume(source, a);
     } else if (kind == "vox") {
         load_vox(source, a);
-    } else {
+    } else if (kind.empty() || !is_mesh_name(a.input)) {
         rock_input rock = load_rock(a.input, a.seed);
         source.repaired = std::move(rock.repaired);
         load_solid(source, a, std::move(rock.body));
+    } else {
+        load_mesh(source, a);
     }
     return source;
 }

@@ -2,6 +2,7 @@
 #include "voxel_session.hpp"
 
 #include <tafoni/version.hpp>
+#include <tafoni/weathering/weathered_voxels.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +41,6 @@ sparse_grid grid_of(std::vector<voxel> const& voxels, sparse_grid const& whole) 
     return out;
 }
 
-/// Appends a mesh; its faces are of `material`.
 void append(surface_mesh& out, voxel_mesh const& part) {
     auto const first = static_cast<std::uint32_t>(out.mesh.positions.size());
     out.mesh.positions.insert(out.mesh.positions.end(), part.mesh.positions.begin(), part.mesh.positions.end());
@@ -53,43 +53,36 @@ void append(surface_mesh& out, voxel_mesh const& part) {
 
 surface_mesh voxel_session::surface(run_type const& run) {
     stopwatch watch;
-    voxel_surface const skin = extract_voxel_surface(run.grid(), {.smoothing = static_cast<int>(a_.smooth)}, threads_);
+    weathered_voxels const skin = extract_weathered_voxels(run, {.smoothing = static_cast<int>(a_.smooth)}, threads_);
     surface_mesh out;
-    auto& vertex = out.attributes.vertex_channels;
     auto& face = out.attributes.face_channels;
-    for (char const* const name : {"curvature", "durability", "decimation", "cavernous", "tint"}) {
-        vertex.push_back({.name = name, .values = {}, .type = channel_type::float32});
-    }
     face = {{.name = "material", .values = {}, .type = channel_type::uint8}, {.name = "contact", .values = {}, .type = channel_type::uint8}};
-    double softest = 1e300;
-    double hardest = 0;
+    struct vertex_numbers {
+        char const* name;
+        std::vector<double> voxel_attributes::* of;
+    };
+    auto& vertex = out.attributes.vertex_channels;
+    for (auto const& [name, of] : {vertex_numbers{"curvature", &voxel_attributes::curvature}, {"durability", &voxel_attributes::durability},
+                                   {"decimation", &voxel_attributes::decimation}, {"cavernous", &voxel_attributes::cavernous}}) {
+        vertex.push_back({.name = name, .values = skin.rock.*of, .type = channel_type::float32});
+        vertex.back().values.insert(vertex.back().values.end(), (skin.colluvium.*of).begin(), (skin.colluvium.*of).end());
+    }
     for (int material = 0; material < 2; ++material) {
-        voxel_mesh const& part = material == 0 ? skin.rock : skin.colluvium;
-        if (material == 0 || !part.mesh.positions.empty()) {
+        voxel_mesh const& part = material == 0 ? skin.surface.rock : skin.surface.colluvium;
+        if (part.mesh.face_count() > 0) {
             out.attributes.groups.push_back({.name = material == 0 ? "rock" : "colluvium", .first_face = face[0].values.size()});
         }
         append(out, part);
-        for (voxel const v : part.vertex_voxel) {
-            auto const seen = run.at(v);
-            double const durability = seen ? seen->durability : run.process().durability(run.grid().centre(v));
-            vertex[0].values.push_back(seen ? 2 * seen->air_share - 1 : 0);
-            vertex[1].values.push_back(durability);
-            vertex[2].values.push_back(seen ? seen->decimation : 100);
-            vertex[3].values.push_back(seen ? run.cavernous_rate(*seen) : 0);
-            vertex[4].values.push_back(material);
-            if (material == 0) softest = std::min(softest, durability);
-            if (material == 0) hardest = std::max(hardest, durability);
-        }
-        for (voxel_face const f : part.triangle_face) {
-            face[0].values.push_back(material);
-            face[1].values.push_back(f == voxel_face::open ? 0 : 1);
-        }
+        face[0].values.insert(face[0].values.end(), part.triangle_face.size(), material);
+        for (voxel_face const f : part.triangle_face) face[1].values.push_back(f == voxel_face::open ? 0 : 1);
     }
-    // For pictures: durability of rock between 0 and 1, colluvium at -1.
-    double const range = hardest > softest ? hardest - softest : 1;
-    for (std::size_t i = 0; i < vertex[4].values.size(); ++i) {
-        vertex[4].values[i] = vertex[4].values[i] > 0 ? -1 : (vertex[1].values[i] - softest) / range;
-    }
+    // For pictures: durability of rock from 0 to 1 over its range, colluvium at -1.
+    auto const& durability = skin.rock.durability;
+    auto const [softest, hardest] = std::minmax_element(durability.begin(), durability.end());
+    mesh_channel tint{.name = "tint", .values = {}, .type = channel_type::float32};
+    for (double const d : durability) tint.values.push_back(*hardest > *softest ? (d - *softest) / (*hardest - *softest) : 0);
+    tint.values.resize(out.mesh.positions.size(), -1);
+    vertex.push_back(std::move(tint));
     surface_seconds_ += watch.lap();
     return out;
 }
@@ -116,7 +109,10 @@ void voxel_session::write_history() const {
     out_.write_text("history.csv", history);
 }
 
-void voxel_session::write_checkpoint(run_type const&, std::string const&) const {}
+void voxel_session::write_checkpoint(run_type const& run, std::string const& path) const {
+    auto const bytes = run.checkpoint();
+    detail::write_file("weather", path, {reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+}
 
 void voxel_session::write_blocks(run_type const& run) {
     nlohmann::ordered_json manifest = nlohmann::ordered_json::array();

@@ -32,12 +32,6 @@ struct any_rate {
     std::function<double(double)> f = [](double c) { return c; };
 
     double operator()(double c) const { return f(c); }
-    /// Values by which a checkpoint knows it again.
-    [[nodiscard]] std::vector<double> parameters() const {
-        std::vector<double> values;
-        for (int k = 0; k <= 32; ++k) values.push_back(f(k / 32.0));
-        return values;
-    }
 
     static any_rate parse(std::string const& text);
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 
 namespace weather {
 
@@ -50,6 +51,10 @@ bool voxel_session::run() {
     progress_.context().tick("voxelise", 0);
     sparse_grid grid = source.voxelise();
     progress_.context().tick("voxelise", 1);
+    if (grid.count(voxel_plane::rock) == 0) {
+        detail::fail<invalid_input>(errc::empty_input, a_.input + ": no voxel of rock; is it closed, or is --resolution too low?",
+                                    {.kind = entity::voxel, .value = 0, .limit = 1});
+    }
     seconds_["voxelise"] = watch.lap();
 
     run_type run(std::move(grid), make_process(source), make_options(source), threads_);
@@ -98,8 +103,12 @@ voxel_options voxel_session::make_options(voxel_source const& source) {
     return o;
 }
 
-void voxel_session::resume(run_type&) {
-    if (a_.steps != voxel_arguments::unset && steps_ == 0) throw usage_error("--steps");
+void voxel_session::resume(run_type& run) {
+    std::string const bytes = load_bytes(a_.resume);
+    run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+    if (run.steps() > steps_) {
+        throw usage_error("--steps " + std::to_string(steps_) + ": the checkpoint has " + std::to_string(run.steps()));
+    }
 }
 
 void voxel_session::recall(run_type const& run) {

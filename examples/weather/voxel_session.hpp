@@ -10,7 +10,6 @@
 
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/voxel/fallen_block.hpp>
-#include <tafoni/voxel/voxel_surface.hpp>
 #include <tafoni/weathering/voxel_run.hpp>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +23,7 @@ public:
     bool run();
 
 private:
-    using process = tafoni::voxel_weathering<any_bubbles, any_rate, any_durability>;
+    using process = tafoni::voxel_weathering<any_bubbles, any_rate, any_field>;
     using run_type = tafoni::voxel_run<process>;
 
     [[nodiscard]] process make_process(voxel_source const& source) const;
