@@ -116,17 +116,13 @@ private:
         for (char const* at = v.begin;;) {
             while (at != v.end && (is_blank(*at) || *at == '(' || *at == ')' || *at == ',')) ++at;
             if (at == v.end) break;
+            if (r.size() == count) source_.fail_at(at, errc::bad_count, "expected " + std::to_string(count) + " numbers, got more");
             parsed_number const n = parse_double(at, v.end);
             bool const complete = n.state == number_state::ok && std::isfinite(n.value) &&
                                   (n.next == v.end || is_blank(*n.next) || *n.next == ')' || *n.next == ',');
             if (!complete) source_.fail_at(at, errc::bad_number, "expected a number, got " + source_.token(at));
-            if (r.size() == count) break;
             r.push_back(n.value);
             at = n.next;
-            if (at != v.end && r.size() == count) {
-                while (at != v.end && (is_blank(*at) || *at == ')')) ++at;
-                if (at != v.end) source_.fail_at(at, errc::bad_count, "expected " + std::to_string(count) + " numbers, got more");
-            }
         }
         if (r.size() != count) {
             source_.fail_at(v.begin, errc::bad_count, "expected " + std::to_string(count) + " numbers, got " + std::to_string(r.size()));
