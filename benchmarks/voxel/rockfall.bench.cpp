@@ -59,7 +59,23 @@ void take(sparse_grid& g, std::span<voxel const> gone) {
     for (voxel const v : gone) g.set(v, voxel_state::air);
 }
 
-void followed(benchmark::State& state, rockfall_options const& options) {
+/// A dozen discs as wide as half of the grid.
+rockfall_options jointed(std::int64_t n, double friction) {
+    rockfall_options out{.friction_angle = friction};
+    stream draw(3, stage::user, 0);
+    auto const edge = static_cast<double>(n);
+    for (std::int64_t i = 0; i < 12; ++i) {
+        vec3 const normal = draw.unit_vector();
+        double const x = draw.uniform(0.2, 0.8);
+        double const y = draw.uniform(0.2, 0.8);
+        double const z = draw.uniform(0.1, 0.9);
+        out.joints.discs.push_back({.centre = {x * edge, y * edge, z * edge}, .normal = normal, .radius = edge / 4});
+    }
+    return out;
+}
+
+void followed(benchmark::State& state, double friction) {
+    rockfall_options const options = friction < 0 ? rockfall_options{} : jointed(state.range(0), friction);
     sparse_grid g = column(static_cast<std::int32_t>(state.range(0)));
     rockfall fall(options);
     std::vector<voxel_change> changes;
@@ -127,10 +143,16 @@ void by_voxels(benchmark::State& state) {
     }
 }
 
-BENCHMARK_CAPTURE(followed, of_skin, rockfall_options{})
+BENCHMARK_CAPTURE(followed, whole_rock, -1.0)
     ->Name("voxel/rockfall/followed")
     ->ArgNames({"n", "removed"})
     ->ArgsProduct({{64, 128, 256, 512}, {100, 2000}})
+    ->Iterations(40)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(followed, jointed, 30.0)
+    ->Name("voxel/rockfall/followed/joints:12/friction:30")
+    ->ArgNames({"n", "removed"})
+    ->ArgsProduct({{64, 128, 256, 512}, {2000}})
     ->Iterations(40)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(by_bricks, one, 1)->Name("voxel/rockfall/whole/bricks")->ArgName("n")->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond);

@@ -45,6 +45,7 @@
 #include <tafoni/decomposition/voronoi_shards.hpp>
 #include <tafoni/decomposition/voxel_cells.hpp>
 #include <tafoni/decomposition/voxelize.hpp>
+#include <tafoni/field/any_field.hpp>
 #include <tafoni/field/blend.hpp>
 #include <tafoni/field/concepts.hpp>
 #include <tafoni/field/constant.hpp>
@@ -61,6 +62,9 @@
 #include <tafoni/field/sine.hpp>
 #include <tafoni/field/strata.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/emitter.hpp>
+#include <tafoni/fluid/mesh_boundary.hpp>
+#include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/geometry/approx.hpp>
 #include <tafoni/geometry/bvh.hpp>
 #include <tafoni/geometry/concepts.hpp>
@@ -189,6 +193,7 @@
 #include <tafoni/weathering/frost_report.hpp>
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
+#include <tafoni/weathering/hydraulic_erosion.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 #include <tafoni/weathering/voxel_report.hpp>
 #include <tafoni/weathering/voxel_run.hpp>

@@ -265,10 +265,13 @@ private:
             fallen_block block{.step = step, .voxels = {crumbs[i]}};
             for (std::size_t at = 0; at < block.voxels.size(); ++at) {
                 voxel const v = block.voxels[at];
-                for (voxel const d : {voxel{1, 0, 0}, voxel{-1, 0, 0}, voxel{0, 1, 0}, voxel{0, -1, 0}, voxel{0, 0, 1}, voxel{0, 0, -1}}) {
-                    auto const w = std::lower_bound(crumbs.begin(), crumbs.end(), v + d);
+                for (std::size_t side = 0; side < 6; ++side) {
+                    voxel const d{side / 2 == 0 ? 1 : 0, side / 2 == 1 ? 1 : 0, side / 2 == 2 ? 1 : 0};
+                    voxel const next = side % 2 == 0 ? v + d : v - d;
+                    auto const w = std::lower_bound(crumbs.begin(), crumbs.end(), next);
                     auto const j = static_cast<std::size_t>(w - crumbs.begin());
-                    if (w == crumbs.end() || *w != v + d || seen[j]) continue;
+                    if (w == crumbs.end() || *w != next || seen[j]) continue;
+                    if (search_->cuts().is_cut(grid, side % 2 == 0 ? v : next, side / 2)) continue;
                     seen[j] = true;
                     block.voxels.push_back(*w);
                 }

@@ -56,10 +56,10 @@ private:
 /// another than before.
 ///
 /// A voxel whose bonded neighbours hang together within its 26 neighbours, by bonds or by the ground, parts
-/// nothing; nor does one (away from joints) whose neighbours hang together within a block of 8^3. What ends within
-/// that block is a crumb and falls at once, if there is ground elsewhere. Other neighbours become witnesses; a
-/// witness that is taken out itself hands on to its own neighbours. So at the end every piece that is not as
-/// it was, but for voxels at its skin, holds a witness or is made of crumbs.
+/// nothing; nor does one whose neighbours hang together within a block of 8^3. What ends within that block, and
+/// rests on nothing, is a crumb and falls at once, if there is ground elsewhere. Other neighbours become
+/// witnesses; a witness that is taken out itself hands on to its own neighbours. So at the end every piece that
+/// is not as it was, but for voxels at its skin, holds a witness or is made of crumbs.
 class rockfall_removals {
 public:
     /// `removed`: rising, without repeats, no rock in the grid any more. With `contacts` a voxel that lay on rock
@@ -90,7 +90,7 @@ public:
         std::sort(crumbs_.begin(), crumbs_.end());
         return out_;
     }
-    /// Rock voxels that are loose for certain, rising, from the last call: whole pieces, none at a joint.
+    /// Rock voxels that are loose for certain, rising, from the last call: whole pieces.
     [[nodiscard]] std::vector<voxel> const& crumbs() const noexcept { return crumbs_; }
     /// Removed voxels that neither look settled, since construction.
     [[nodiscard]] std::size_t parted() const noexcept { return parted_; }
@@ -184,17 +184,23 @@ private:
         }
         if (hangs_together) {
             if (footing) name(grid, v, bonded & (0U - bonded));
-        } else if ((fixed & centre_bit) != 0 || (!cuts.empty() && near_cut(grid, cuts, v, 5))) {
+        } else if ((fixed & centre_bit) != 0) {
             ++parted_;
             name(grid, v, bonded);
         } else {
-            look_wider(grid, ground, v, bonded, footing);
+            look_wider(grid, cuts, ground, v, bonded, footing, contacts);
         }
     }
 
     /// The same by a block of 8^3.
-    void look_wider(sparse_grid const& grid, rockfall_ground const& ground, voxel v, std::uint32_t bonded, bool footing) {
-        auto const block = rockfall_block::around(grid, v, [&](std::size_t b, std::size_t c) { return rock_word(grid, b, c); });
+    void look_wider(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v, std::uint32_t bonded,
+                    bool footing, bool contacts) {
+        auto block = rockfall_block::around(grid, v, [&](std::size_t b, std::size_t c) { return rock_word(grid, b, c); });
+        if (!cuts.empty() && near_cut(grid, cuts, v, 4)) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                block.cut[axis] = block.gather(grid, [&](std::size_t b, std::size_t c) { return cuts.word(axis, b, c); });
+            }
+        }
         std::uint32_t going_on = 0;  // a cell of each part that leaves the block
         bool any_held = false;
         while (bonded != 0) {
@@ -204,7 +210,7 @@ private:
                 std::uint32_t const other = left & (0U - left);
                 if (block.has(part, neighbour(v, other))) bonded &= ~other;
             }
-            bool goes_on = !has_ground_ || rockfall_block::reaches_out(part);
+            bool const goes_on = !has_ground_ || rockfall_block::reaches_out(part) || (contacts && block.at_contact(part));
             if (!goes_on) {
                 bool held = false;
                 block.for_voxels(part, [&](voxel w) { held = held || ground.contains(grid, w); });
