@@ -296,8 +296,12 @@ public:
     [[nodiscard]] std::size_t count(voxel_plane p) const noexcept {
         std::size_t n = 0;
         for (std::size_t b = 0; b < table_.size(); ++b) {
-            if (table_[b] == all_air) continue;
-            for (std::size_t c = 0; c < 1024; ++c) n += static_cast<std::size_t>(std::popcount(plane_word(p, b, c)));
+            std::uint32_t const slot = table_[b];
+            if (slot == all_air || (slot == all_rock && p == voxel_plane::colluvium)) continue;
+            voxel const low = brick_corner(b);
+            for (std::size_t c = 0; c < 1024; ++c) {
+                n += static_cast<std::size_t>(std::popcount(slot == all_rock ? inside_word(low, c) : plane_word(p, b, c)));
+            }
         }
         return n;
     }
