@@ -191,3 +191,102 @@ TEST_CASE("voxels need not be cubes where holes are closed") {
     fill_from_mesh(grid, mesh);
     REQUIRE(wrong_voxels(grid, mesh) == 0);
 }
+
+TEST_CASE("seams, doubled faces, isolated vertices and edges of many faces are no holes that matter") {
+    indexed_mesh const whole = tafoni_test::fan_triangulated(tafoni_test::box({1, 1, 1}, {5, 6, 7}));
+    sparse_grid expected({.size = {8, 8, 8}});
+    REQUIRE(fill_from_mesh(expected, whole).rock == 4 * 5 * 6);
+
+    // Every triangle with corners of its own, -0 and 0 alike, and vertices that nothing uses.
+    indexed_mesh soup;
+    soup.add_vertex({100, 100, 100});
+    for (std::size_t f = 0; f < whole.face_count(); ++f) {
+        for (std::uint32_t const v : whole.face(f)) soup.add_vertex(whole.positions[v]);
+        auto const n = static_cast<std::uint32_t>(soup.positions.size());
+        soup.add_face({n - 3, n - 2, n - 1});
+    }
+    sparse_grid grid({.size = {8, 8, 8}});
+    auto report = fill_from_mesh(grid, soup);
+    REQUIRE((report.holes == 0 && report.isolated_vertices == 1));
+    REQUIRE(differences(grid, expected) == 0);
+
+    // A face twice, and a fin that stands on an edge: the number differs from that of the box by their solid angles.
+    indexed_mesh fin = whole;
+    fin.add_face({whole.face(3)[0], whole.face(3)[1], whole.face(3)[2]});
+    std::uint32_t const tip = static_cast<std::uint32_t>(fin.positions.size());
+    fin.add_vertex({3.1, 3.2, 7.9});
+    fin.add_face({whole.face(0)[0], whole.face(0)[1], tip});
+    fin.add_face({0, 0, 1});
+    report = fill_from_mesh(grid, fin);
+    REQUIRE(report.boundary_edges == 6);
+    REQUIRE(report.dropped_faces == 1);
+    REQUIRE(wrong_voxels(grid, fin) == 0);
+}
+
+TEST_CASE("a mesh of nothing, or a sheet that encloses nothing, leaves air") {
+    sparse_grid grid({.size = {4, 4, 4}});
+    grid.set({1, 1, 1}, voxel_state::colluvium);
+    REQUIRE(fill_from_mesh(grid, indexed_mesh{}).rock == 0);
+    REQUIRE(grid.count(voxel_plane::solid) == 0);
+    indexed_mesh sheet;
+    sheet.positions = {{0.2, 0.3, 2.2}, {3.7, 0.4, 2.2}, {1.5, 3.6, 2.2}};
+    sheet.add_face({0, 1, 2});
+    auto const report = fill_from_mesh(grid, sheet);
+    REQUIRE((report.rock == 0 && report.holes == 1 && report.boundary_edges == 3 && report.volume == 0));
+}
+
+TEST_CASE("meshes that cannot be filled are refused by name, and the grid is as it was") {
+    sparse_grid grid({.size = {4, 4, 4}});
+    grid.set({1, 1, 1}, voxel_state::colluvium);
+    auto const code_of = [&](indexed_mesh const& m) {
+        auto const f = tafoni_test::failure_of([&] { return fill_from_mesh(grid, m); });
+        REQUIRE(f.happened);
+        REQUIRE(grid.count(voxel_plane::colluvium) == 1);
+        return f.code;
+    };
+    indexed_mesh const box = tafoni_test::unit_box();
+    for (double const wrong : {static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+        indexed_mesh m = box;
+        m.positions[3][1] = wrong;
+        REQUIRE(code_of(m) == errc::non_finite_vertex);
+    }
+    indexed_mesh m = box;
+    m.corners[5] = 8;
+    REQUIRE(code_of(m) == errc::index_out_of_range);
+    m = box;
+    m.add_face({0, 1});
+    REQUIRE(code_of(m) == errc::degenerate_face);
+    m = box;
+    m.positions[0] = vec3{-1e30, 0, 0};
+    REQUIRE(code_of(m) == errc::out_of_range);
+    REQUIRE_THROWS_AS(fill_from_mesh(grid, tafoni_test::inside_out(box)), bad_topology);
+    REQUIRE_THROWS_AS(fill_from_mesh(grid, tafoni_test::inside_out(pierced(tafoni_test::icosphere(1), [](vec3 const& p) { return p[2] < 0.7; }))), bad_topology);
+    REQUIRE(grid.count(voxel_plane::colluvium) == 1);
+}
+
+TEST_CASE("meshes of any scale fill alike") {
+    indexed_mesh const mesh = pierced(tafoni_test::icosphere(2), [](vec3 const& p) { return p[2] < 0.8; });
+    sparse_grid expected(frame_for(box_of(mesh), 20));
+    auto const rock = fill_from_mesh(expected, mesh).rock;
+    for (double const scale : {0x1p-90, 0x1p-30, 0x1p40, 0x1p90}) {
+        indexed_mesh scaled = mesh;
+        for (vec3& p : scaled.positions) p = vec3(scale * p);
+        sparse_grid grid(frame_for(box_of(scaled), 20));
+        REQUIRE(fill_from_mesh(grid, scaled).rock == rock);
+        REQUIRE(differences(grid, expected) == 0);
+    }
+}
+
+TEST_CASE("a hand that is open at the wrist is filled up to its lid") {
+    auto const path = tafoni_test::find("meshes/hand_lowres.obj");
+    if (path.empty()) {
+        WARN("skipped: no data");
+        return;
+    }
+    indexed_mesh const mesh = read_mesh(path).mesh;
+    sparse_grid grid(frame_for(box_of(mesh), 128));
+    auto const report = fill_from_mesh(grid, mesh);
+    REQUIRE((report.holes == 1 && report.boundary_edges == 16));
+    double const edge = grid.spacing()[0];
+    REQUIRE(static_cast<double>(report.rock) * edge * edge * edge == Approx(report.volume).epsilon(0.005));
+}
