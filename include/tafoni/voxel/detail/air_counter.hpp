@@ -133,7 +133,7 @@ private:
 
     /// Of all words of a bubble, once.
     [[nodiscard]] std::size_t word_cost(stencil_words const& words) const noexcept {
-        if (kernels_ == kernel_set::avx512 && !words.blocks().empty()) return 3 * words.blocks().size() / 2;
+        if (kernels_ == kernel_set::avx512) return 3 * words.blocks().size() / 2;
         return kernels_ == kernel_set::portable ? 4 * words.words().size() : words.words().size();
     }
 

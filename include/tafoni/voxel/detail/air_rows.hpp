@@ -7,6 +7,7 @@
 #include <tafoni/voxel/detail/skin_view.hpp>
 #include <tafoni/voxel/detail/stencil_words.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,10 +31,11 @@ public:
     }
     /// Bits from height -16 up.
     [[nodiscard]] std::uint64_t const* medium(brick_position p) const noexcept { return medium_.data() + column(p); }
-    /// Bits from height -48 up, two words for a column, 128 columns to a row.
+    /// Bits from height -48 up, 128 columns to a row; those from height 16 up lie `wide_plane` words further.
     [[nodiscard]] std::uint64_t const* wide(brick_position p) const noexcept {
-        return wide_.data() + 2 * (((p >> 5 & 31) + 48) + 128 * ((p >> 10) + 48));
+        return wide_.data() + ((p >> 5 & 31) + 48) + 128 * ((p >> 10) + 48);
     }
+    static constexpr std::ptrdiff_t wide_plane = 128 * 128;
 
 private:
     static constexpr std::ptrdiff_t layer = 4096 + 16;  // a vector may begin at the last column and look beyond
@@ -70,15 +72,13 @@ private:
     }
 
     void gather_wide(sparse_grid const& grid, std::size_t brick, int margin) {
-        wide_.resize(2 * 128 * 128);
+        wide_.resize(2 * wide_plane + 8);
         voxel const low = grid.brick_corner(brick);
         auto const& n = grid.size();
         auto const& bricks = grid.bricks();
         for (int y = -margin; y < 32 + margin; ++y) {
             for (int x = -margin; x < 32 + margin; ++x) {
-                std::uint64_t* const row = wide_.data() + 2 * ((x + 48) + 128 * (y + 48));
-                row[0] = 0;
-                row[1] = 0;
+                std::array<std::uint64_t, 2> row{};
                 bool const beside = static_cast<std::size_t>(low.x + x) >= n[0] ||
                                     static_cast<std::size_t>(low.y + y) >= n[1];
                 for (int dz = -2; dz <= 2; ++dz) {
@@ -86,17 +86,19 @@ private:
                     voxel const v{low.x + x, low.y + y, low.z + 32 * dz};
                     std::uint64_t const word = grid.solid_word(grid.brick_of(v), sparse_grid::column_of(v));
                     int const bit = 48 + 32 * dz;
-                    if (bit < 0) row[0] |= word >> -bit;
-                    else if (bit < 64) row[0] |= word << bit;
-                    if (bit == 48) row[1] |= word >> 16;
-                    else if (bit > 64) row[1] |= word << (bit - 64);
+                    if (bit < 64) row[0] |= bit < 0 ? word >> -bit : word << bit;
+                    if (bit >= 48) row[1] |= bit < 64 ? word >> (64 - bit) : word << (bit - 64);
                 }
                 patch_wide(grid, low, x, y, beside, row);
+                std::ptrdiff_t const at = (x + 48) + 128 * (y + 48);
+                wide_[static_cast<std::size_t>(at)] = row[0];
+                wide_[static_cast<std::size_t>(at + wide_plane)] = row[1];
             }
         }
     }
     /// What lies beyond the grid, as the border says.
-    static void patch_wide(sparse_grid const& grid, voxel low, int x, int y, bool beside, std::uint64_t* row) {
+    static void patch_wide(sparse_grid const& grid, voxel low, int x, int y, bool beside,
+                           std::array<std::uint64_t, 2>& row) {
         auto const height = static_cast<std::int32_t>(grid.size()[2]);
         for (int z = -48; z < 80; ++z) {
             bool const within = low.z + z >= 0 && low.z + z < height;

@@ -16,7 +16,7 @@ namespace tafoni::detail {
 /// the machine has. O(voxels * words of the bubble).
 inline void count_solid(count_task const& t, kernel_set set = best_kernel_set()) {
 #if defined(__x86_64__) && defined(__GNUC__)
-    if (set == kernel_set::avx512 && t.bubble.kind() != stencil_words::layout::wide) return isa_avx512::count_solid(t);
+    if (set == kernel_set::avx512) return isa_avx512::count_solid(t);
     if (set != kernel_set::portable) return isa_popcnt::count_solid(t);
 #endif
     static_cast<void>(set);

@@ -81,10 +81,7 @@ public:
         for (stencil_row const& r : rows) mirrored_.push_back(r.mirrored());
         layout_ = sideways > 16 || upwards > 16 ? layout::wide : upwards > 8 ? layout::medium : layout::narrow;
         if (layout_ == layout::wide) {
-            for (stencil_row const& r : rows) {
-                words_.push_back({r.dx + wide_stride * r.dy, r.bits[0]});
-                words_.push_back({r.dx + wide_stride * r.dy, r.bits[1]});
-            }
+            pack_wide(rows);
         } else if (layout_ == layout::medium) {
             pack<std::uint64_t>(rows, medium_anchor);
         } else {
@@ -97,7 +94,7 @@ public:
     [[nodiscard]] std::span<word const> words() const noexcept { return words_; }
     /// Rows of those whose bubble holds the centre.
     [[nodiscard]] std::span<stencil_row const> mirrored() const noexcept { return mirrored_; }
-    /// 16 narrow or 8 medium rows each, beginning at `block_offsets`; none when wide.
+    /// 16 narrow or 8 medium rows each, beginning at `block_offsets`; of 8 wide rows first the low, then the high words.
     [[nodiscard]] std::span<block const> blocks() const noexcept { return blocks_; }
     [[nodiscard]] std::span<std::int32_t const> block_offsets() const noexcept { return block_offsets_; }
 
@@ -131,6 +128,24 @@ private:
                 blocks_.push_back(b);
             }
             first = last;
+        }
+    }
+
+    void pack_wide(std::span<stencil_row const> rows) {
+        for (std::size_t at = 0; at < rows.size();) {
+            stencil_row const first = rows[at];
+            block low{};
+            block high{};
+            for (; at < rows.size() && rows[at].dy == first.dy && rows[at].dx < first.dx + 8; ++at) {
+                std::int32_t const offset = rows[at].dx + wide_stride * rows[at].dy;
+                words_.push_back({offset, rows[at].bits[0]});
+                words_.push_back({offset, rows[at].bits[1]});
+                low.mask[static_cast<std::size_t>(rows[at].dx - first.dx)] = rows[at].bits[0];
+                high.mask[static_cast<std::size_t>(rows[at].dx - first.dx)] = rows[at].bits[1];
+            }
+            block_offsets_.push_back(first.dx + wide_stride * first.dy);
+            blocks_.push_back(low);
+            blocks_.push_back(high);
         }
     }
 

@@ -59,10 +59,10 @@ private:
             auto const words = t.bubble.words();
             int solid = 0;
             for (std::size_t k = 0; k < words.size(); k += 2) {
-                std::uint64_t const* const row = at + 2 * words[k].offset;
-                std::uint64_t const carried = row[1] << 1 << (63 - z);
-                solid += std::popcount((row[0] >> z | carried) & words[k].mask) +
-                         std::popcount(row[1] >> z & words[k + 1].mask);
+                std::uint64_t const low = at[words[k].offset];
+                std::uint64_t const high = at[words[k].offset + air_rows::wide_plane];
+                solid += std::popcount((low >> z | high << 1 << (63 - z)) & words[k].mask) +
+                         std::popcount(high >> z & words[k + 1].mask);
             }
             t.solid[i] = static_cast<std::uint32_t>(solid);
         }
