@@ -73,47 +73,18 @@ public:
     /// \param changes  gets rock -> air appended, each voxel once, in voxel order.
     /// \return  the pieces by their lowest voxels; the same for every executor.
     /// \throws invalid_input  `bad_parameter`, for a removed voxel that is rock or outside the grid, or another size of
-    ///         grid than before; nothing is changed then.
+    ///         grid than before; nothing is changed then. Where memory runs out, some of what falls may have fallen;
+    ///         the next call looks at all.
     template <executor Executor>
     std::vector<fallen_block> fall(sparse_grid& grid, std::span<voxel const> removed, std::uint64_t step,
                                    Executor const& threads, std::vector<voxel_change>& changes) {
-        std::vector<std::uint32_t> loose;
-        std::vector<fallen_block> out;
-        std::size_t const first = changes.size();
-        if (!search_) {
-            detail::joint_cuts cuts(grid, options_.joints, threads);
-            detail::rockfall_ground ground(grid, options_, threads);
-            search_.emplace(grid, std::move(cuts), std::move(ground));
-            size_ = grid.size();
-            ground_left_ = search_->ground().count(grid);
-            rock_left_ = grid.count(voxel_plane::rock);
-            loose = look_at_all(grid, threads);
-        } else {
-            std::vector<voxel> const gone = checked(grid, removed);
-            bool const had_ground = ground_left_ != 0;
-            for (voxel const v : gone) {
-                search_->touch(grid.brick_of(v));
-                if (search_->ground().contains(grid, v)) --ground_left_;
-            }
-            rock_left_ -= gone.size();
-            auto const& open = removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction(), ground_left_ != 0);
-            crumble(grid, removals_.crumbs(), step, changes, out);
-            search_->begin_epoch();
-            if (had_ground && ground_left_ == 0) {
-                loose = look_at_all(grid, threads);
-            } else if (!open.empty()) {
-                loose = look_from(grid, open);
-            }
+        std::vector<voxel> const gone = search_ ? checked(grid, removed) : std::vector<voxel>{};
+        try {
+            return let_fall_from(grid, gone, step, threads, changes);
+        } catch (...) {
+            restart();  // what the next call finds depends on the grid alone
+            throw;
         }
-        while (!loose.empty()) {
-            std::vector<voxel> const left_hanging = let_fall(grid, loose, step, changes, out);
-            search_->begin_epoch();
-            loose = left_hanging.empty() ? std::vector<std::uint32_t>{} : look_from(grid, left_hanging);
-        }
-        std::sort(changes.begin() + static_cast<std::ptrdiff_t>(first), changes.end(),
-                  [](voxel_change const& a, voxel_change const& b) { return a.at < b.at; });
-        std::sort(out.begin(), out.end(), [](fallen_block const& a, fallen_block const& b) { return a.voxels[0] < b.voxels[0]; });
-        return out;
     }
 
     /// What finding it took since the object or `restart` began, to be watched: bricks labelled, faces of bricks
@@ -151,6 +122,47 @@ private:
         std::vector<voxel> out(removed.begin(), removed.end());
         if (!std::is_sorted(out.begin(), out.end())) std::sort(out.begin(), out.end());
         out.erase(std::unique(out.begin(), out.end()), out.end());
+        return out;
+    }
+
+    template <executor Executor>
+    std::vector<fallen_block> let_fall_from(sparse_grid& grid, std::vector<voxel> const& gone, std::uint64_t step,
+                                            Executor const& threads, std::vector<voxel_change>& changes) {
+        std::vector<std::uint32_t> loose;
+        std::vector<fallen_block> out;
+        std::size_t const first = changes.size();
+        if (!search_) {
+            detail::joint_cuts cuts(grid, options_.joints, threads);
+            detail::rockfall_ground ground(grid, options_, threads);
+            search_.emplace(grid, std::move(cuts), std::move(ground));
+            size_ = grid.size();
+            ground_left_ = search_->ground().count(grid);
+            rock_left_ = grid.count(voxel_plane::rock);
+            loose = look_at_all(grid, threads);
+        } else {
+            bool const had_ground = ground_left_ != 0;
+            for (voxel const v : gone) {
+                search_->touch(grid.brick_of(v));
+                if (search_->ground().contains(grid, v)) --ground_left_;
+            }
+            rock_left_ -= gone.size();
+            auto const& open = removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction(), ground_left_ != 0);
+            crumble(grid, removals_.crumbs(), step, changes, out);
+            search_->begin_epoch();
+            if (had_ground && ground_left_ == 0) {
+                loose = look_at_all(grid, threads);
+            } else if (!open.empty()) {
+                loose = look_from(grid, open);
+            }
+        }
+        while (!loose.empty()) {
+            std::vector<voxel> const left_hanging = let_fall(grid, loose, step, changes, out);
+            search_->begin_epoch();
+            loose = left_hanging.empty() ? std::vector<std::uint32_t>{} : look_from(grid, left_hanging);
+        }
+        std::sort(changes.begin() + static_cast<std::ptrdiff_t>(first), changes.end(),
+                  [](voxel_change const& a, voxel_change const& b) { return a.at < b.at; });
+        std::sort(out.begin(), out.end(), [](fallen_block const& a, fallen_block const& b) { return a.voxels[0] < b.voxels[0]; });
         return out;
     }
 
