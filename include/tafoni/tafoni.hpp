@@ -173,6 +173,7 @@
 #include <tafoni/voxel/isosurface.hpp>
 #include <tafoni/voxel/joints.hpp>
 #include <tafoni/voxel/predicate_bubble.hpp>
+#include <tafoni/voxel/random_joints.hpp>
 #include <tafoni/voxel/rates.hpp>
 #include <tafoni/voxel/repose_rule.hpp>
 #include <tafoni/voxel/rockfall.hpp>
@@ -194,6 +195,7 @@
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
 #include <tafoni/weathering/hydraulic_erosion.hpp>
+#include <tafoni/weathering/hydraulic_run.hpp>
 #include <tafoni/weathering/voxel_options.hpp>
 #include <tafoni/weathering/voxel_report.hpp>
 #include <tafoni/weathering/voxel_run.hpp>
