@@ -92,7 +92,8 @@ public:
     }
 
     /// One vertex counts once for itself and once for every neighbour, where two triangles lie at each edge.
-    void smooth(std::span<std::uint32_t const> rock, std::span<std::uint32_t const> rest, int rounds) {
+    template <executor E>
+    void smooth(std::span<std::uint32_t const> rock, std::span<std::uint32_t const> rest, int rounds, E const& exec) {
         if (rounds == 0) return;
         std::vector<place> sum(at_.size());
         std::vector<std::int64_t> weight(at_.size(), 2);
@@ -115,9 +116,11 @@ public:
                     }
                 }
             }
-            for (std::size_t v = 0; v < at_.size(); ++v) {
-                for (std::size_t d = 0; d < 3; ++d) at_[v][d] = nearest(sum[v][d], weight[v]);
-            }
+            exec.for_blocks(at_.size(), 8192, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t v = begin; v < end; ++v) {
+                    for (std::size_t d = 0; d < 3; ++d) at_[v][d] = nearest(sum[v][d], weight[v]);
+                }
+            });
         }
     }
 
@@ -168,7 +171,7 @@ public:
         });
 
         surface_places places(edges_);
-        places.smooth(rock_, open_colluvium(smoothing), smoothing);
+        places.smooth(rock_, open_colluvium(smoothing), smoothing, exec_);
         finish_rock(places);
         finish_colluvium(places);
         return std::move(out_);
