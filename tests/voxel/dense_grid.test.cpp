@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/voxel/copy_states.hpp>
 #include <tafoni/voxel/dense_grid.hpp>
 #include <tafoni/voxel/span_grid.hpp>
 
@@ -94,4 +96,30 @@ TEST_CASE("a dense grid that was moved from has no voxels") {
     CHECK(b.count(voxel_state::rock) == 24);
     a = dense_grid(b);
     CHECK(a == b);
+}
+
+TEST_CASE("different voxels of a dense grid, and different stored bricks, may be set by several threads", "[threads]") {
+    grid_frame const frame{.size = {64, 40, 70}};
+    auto const wanted = [](voxel v) { return static_cast<voxel_state>((v.x * 7 + v.y * 5 + v.z * 3) % 3); };
+    thread_pool const threads(4);
+    dense_grid dense(frame);
+    threads.for_blocks(frame.size[2], 1, [&](std::size_t begin, std::size_t) {
+        auto const z = static_cast<std::int32_t>(begin);
+        for (int y = 0; y < 40; ++y) {
+            for (int x = 0; x < 64; ++x) dense.set({x, y, z}, wanted({x, y, z}));
+        }
+    });
+    sparse_grid sparse(frame);
+    for (std::size_t b = 0; b < sparse.brick_count(); ++b) (void)sparse.make_mixed(b);
+    threads.for_blocks(sparse.brick_count(), 1, [&](std::size_t b, std::size_t) {
+        voxel const low = sparse.brick_corner(b);
+        for (int n = 0; n < 32 * 32 * 32; ++n) {
+            voxel const v = low + voxel{n & 31, n >> 5 & 31, n >> 10};
+            if (sparse.contains(v)) sparse.set(v, wanted(v));
+        }
+    });
+    dense_grid back(frame);
+    copy_states(sparse, back);
+    CHECK(back == dense);
+    CHECK(dense.at({1, 0, 0}) == voxel_state::rock);
 }

@@ -31,7 +31,8 @@ public:
         : frame_((detail::require_stored_frame("dense_grid", frame, most), frame)),
           states_(frame.voxel_count(), static_cast<std::uint8_t>(fill)) {}
     /// Takes the bytes over: 0 air, 1 rock, 2 colluvium. O(voxels) to check.
-    /// \throws invalid_input  also `attribute_length` when they are not one per voxel, `out_of_range` for any other value.
+    /// \throws invalid_input  also `attribute_length` when they are not one per voxel, `out_of_range` for any
+    ///                        other value.
     dense_grid(grid_frame const& frame, std::vector<std::uint8_t> states)
         : frame_((detail::require_stored_frame("dense_grid", frame, most),
                   detail::require_states("dense_grid", frame, states), frame)),

@@ -300,7 +300,8 @@ public:
             if (slot == all_air || (slot == all_rock && p == voxel_plane::colluvium)) continue;
             voxel const low = brick_corner(b);
             for (std::size_t c = 0; c < 1024; ++c) {
-                n += static_cast<std::size_t>(std::popcount(slot == all_rock ? inside_word(low, c) : plane_word(p, b, c)));
+                std::uint32_t const word = slot == all_rock ? inside_word(low, c) : plane_word(p, b, c);
+                n += static_cast<std::size_t>(std::popcount(word));
             }
         }
         return n;
