@@ -100,7 +100,8 @@ std::uint64_t loops_over_cube(hoodoo const& h, bubble_stencil const& bubble) {
     for (int z = -r; z <= r; ++z) {
         for (int y = -r; y <= r; ++y) {
             for (int x = -r; x <= r; ++x) {
-                cube[static_cast<std::size_t>(x + r + edge * (y + r + edge * (z + r)))] = bubble.contains(x, y, z) ? 1 : 0;
+                cube[static_cast<std::size_t>(x + r + edge * (y + r + edge * (z + r)))] =
+                    bubble.contains(x, y, z) ? 1 : 0;
             }
         }
     }
@@ -155,11 +156,26 @@ void recount(benchmark::State& state, kernel_set kernels) {
     state.counters["surface"] = double(h.surface.size());
 }
 BENCHMARK_CAPTURE(recount, portable, kernel_set::portable)
-    ->Name("voxel/bubble/recount/portable/r")->Arg(3)->Arg(7)->Unit(benchmark::kMillisecond);
+    ->Name("voxel/bubble/recount/portable/r")
+    ->Arg(3)
+    ->Arg(7)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(recount, popcnt, kernel_set::popcnt)
-    ->Name("voxel/bubble/recount/popcnt/r")->Arg(3)->Arg(7)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
+    ->Name("voxel/bubble/recount/popcnt/r")
+    ->Arg(3)
+    ->Arg(7)
+    ->Arg(16)
+    ->Arg(32)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(recount, avx512, kernel_set::avx512)
-    ->Name("voxel/bubble/recount/avx512/r")->Arg(3)->Arg(5)->Arg(7)->Arg(9)->Arg(12)->Arg(16)->Arg(32)
+    ->Name("voxel/bubble/recount/avx512/r")
+    ->Arg(3)
+    ->Arg(5)
+    ->Arg(7)
+    ->Arg(9)
+    ->Arg(12)
+    ->Arg(16)
+    ->Arg(32)
     ->Unit(benchmark::kMillisecond);
 
 // All in turn, so that the ratios come from one run on one machine; counts are compared as well.
@@ -192,7 +208,12 @@ void ratio(benchmark::State& state) {
     state.counters["ratio_to_cube"] = cube / ours;
     state.counters["ratio_to_offsets"] = list / ours;
 }
-BENCHMARK(ratio)->Name("voxel/bubble/ratio_to_loops/r")->Arg(3)->Arg(5)->Arg(7)->Iterations(5)
+BENCHMARK(ratio)
+    ->Name("voxel/bubble/ratio_to_loops/r")
+    ->Arg(3)
+    ->Arg(5)
+    ->Arg(7)
+    ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 
 // Where telling the neighbours of what has changed costs as much as counting again: so many of 1000 voxels
@@ -210,7 +231,8 @@ void notify(benchmark::State& state) {
     std::size_t told = 0;
     for (std::size_t s = 0; s < h.skins.size(); ++s) {
         for (voxel_change const& c : changes) {
-            if (detail::air_counter::concerns(c, h.grid.brick_corner(h.skins[s].brick), bubble.reach())) near[s].push_back(c);
+            if (detail::air_counter::concerns(c, h.grid.brick_corner(h.skins[s].brick), bubble.reach()))
+                near[s].push_back(c);
         }
         told += near[s].size();
     }
@@ -218,7 +240,9 @@ void notify(benchmark::State& state) {
     detail::air_counter counter;
     double notifying = 0;
     double recounting = 0;
-    auto const now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+    auto const now = [] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    };
     for (auto _ : state) {
         double const t0 = now();
         for (std::size_t s = 0; s < skins.size(); ++s) {
@@ -232,7 +256,8 @@ void notify(benchmark::State& state) {
     }
     state.counters["changes"] = double(changes.size());
     state.counters["changes_near_per_record"] = double(told) / double(h.surface.size());
-    state.counters["ns_per_change_near"] = 1e9 * notifying / double(state.iterations()) / double(std::max<std::size_t>(told, 1));
+    state.counters["ns_per_change_near"] =
+        1e9 * notifying / double(state.iterations()) / double(std::max<std::size_t>(told, 1));
     state.counters["notify_over_recount"] = notifying / recounting;
     std::size_t recounted = 0;
     for (std::size_t s = 0; s < skins.size(); ++s) {
@@ -241,7 +266,9 @@ void notify(benchmark::State& state) {
     }
     state.counters["bricks_recounted"] = double(recounted) / double(skins.size());
 }
-BENCHMARK(notify)->Name("voxel/bubble/notify/r/permille")
-    ->ArgsProduct({{3, 5, 7, 12}, {3, 10, 20, 40, 80}})->Unit(benchmark::kMillisecond);
+BENCHMARK(notify)
+    ->Name("voxel/bubble/notify/r/permille")
+    ->ArgsProduct({{3, 5, 7, 12}, {3, 10, 20, 40, 80}})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

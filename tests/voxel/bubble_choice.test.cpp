@@ -28,8 +28,9 @@ TEST_CASE("shipped choices keep the laws of choices") {
     CHECK(laws::bubble_choice(bubble_mixture{.bubbles = {sphere_bubble{3}, disc_bubble{.radius = 4}, sphere_bubble{6}},
                                              .field = gradient_noise{.seed = 4, .frequency = 0.3}})
               .empty());
-    CHECK(laws::bubble_choice(bubble_profile{.bubbles = {sphere_bubble{3}, disc_bubble{.radius = 4}},
-                                             .layers = {{.top = -1, .mix = {1}}, {.top = 2, .mix = {0, 1}}, {.mix = {0}}}})
+    CHECK(laws::bubble_choice(
+              bubble_profile{.bubbles = {sphere_bubble{3}, disc_bubble{.radius = 4}},
+                             .layers = {{.top = -1, .mix = {1}}, {.top = 2, .mix = {0, 1}}, {.mix = {0}}}})
               .empty());
     CHECK(laws::bubble_choice(archetypes::bubble_choice(1)).empty());
 }

@@ -15,8 +15,9 @@ using namespace tafoni;
 namespace {
 
 /// Mean share of air around those voxels of rock that have a face to the air and that `counted` picks.
-double mean_share(int n, bubble_stencil const& bubble, std::function<bool(voxel)> const& rock,
-                  std::function<bool(voxel)> const& counted = [](voxel) { return true; }) {
+double mean_share(
+    int n, bubble_stencil const& bubble, std::function<bool(voxel)> const& rock,
+    std::function<bool(voxel)> const& counted = [](voxel) { return true; }) {
     auto const size = static_cast<std::size_t>(n);
     sparse_grid grid({.size = {size, size, size}}, up_axis::plus_z,
                      {{border_kind::extend, border_kind::extend, border_kind::extend, border_kind::extend,
@@ -37,8 +38,8 @@ double mean_share(int n, bubble_stencil const& bubble, std::function<bool(voxel)
             voxel const v = detail::at_position(grid.brick_corner(b), p);
             if (!grid.contains(v) || !grid.is_solid(v) || !counted(v)) continue;
             bool skin = false;
-            for (voxel const d : {voxel{1, 0, 0}, voxel{-1, 0, 0}, voxel{0, 1, 0}, voxel{0, -1, 0}, voxel{0, 0, 1},
-                                  voxel{0, 0, -1}}) {
+            for (voxel const d :
+                 {voxel{1, 0, 0}, voxel{-1, 0, 0}, voxel{0, 1, 0}, voxel{0, -1, 0}, voxel{0, 0, 1}, voxel{0, 0, -1}}) {
                 skin = skin || !grid.is_solid(v + d);
             }
             if (skin) position.push_back(p);
@@ -71,8 +72,8 @@ double square(double x) { return x * x; }
 
 TEST_CASE("on a plane the share of air is one half, less the half voxel that a centre lies below the surface") {
     for (double const r : {2.5, 5.0, 7.0, 12.0}) {
-        for (bubble_stencil const& bubble : {bubble_stencil(sphere_bubble{.radius = r}),
-                                             bubble_stencil(disc_bubble{.radius = r, .thickness = 5})}) {
+        for (bubble_stencil const& bubble :
+             {bubble_stencil(sphere_bubble{.radius = r}), bubble_stencil(disc_bubble{.radius = r, .thickness = 5})}) {
             std::uint32_t above = 0;
             for (auto const& row : bubble.rows()) {
                 for (int z = 1; z <= bubble.reach(); ++z) above += bubble.contains(row.dx, row.dy, z) ? 1u : 0u;
@@ -86,11 +87,12 @@ TEST_CASE("on a plane the share of air is one half, less the half voxel that a c
         CHECK(std::fabs(0.5 - wall) <= 0.4 / r);
     }
     refined const slope([](int r) {
-        return mean_share(4 * r + 8, sphere_bubble{.radius = double(r)},
-                          [r](voxel v) { return 3 * (v.x - 2 * r) + 2 * (v.y - 2 * r) + 7 * (v.z - 2 * r) < 3; },
-                          [r](voxel v) {
-                              return std::abs(v.x - 2 * r) < r && std::abs(v.y - 2 * r) < r && std::abs(v.z - 2 * r) < r;
-                          });
+        return mean_share(
+            4 * r + 8, sphere_bubble{.radius = double(r)},
+            [r](voxel v) { return 3 * (v.x - 2 * r) + 2 * (v.y - 2 * r) + 7 * (v.z - 2 * r) < 3; },
+            [r](voxel v) {
+                return std::abs(v.x - 2 * r) < r && std::abs(v.y - 2 * r) < r && std::abs(v.z - 2 * r) < r;
+            });
     });
     CHECK(slope.limit() == Approx(0.5).margin(0.003));
     CHECK(std::fabs(slope.share[2] - 0.5) < 0.6 * std::fabs(slope.share[1] - 0.5));
@@ -98,7 +100,7 @@ TEST_CASE("on a plane the share of air is one half, less the half voxel that a c
 
 TEST_CASE("on a sphere the share of air tends to 1/2 + 3 r / (16 R), and to 1/2 - 3 r / (16 R) in a hollow") {
     for (bool const hollow : {false, true}) {
-        refined const seen([hollow](int r) {  // R = 4 r
+        refined const seen([hollow](int r) {          // R = 4 r
             int const n = (hollow ? 10 : 8) * r + 4;  // a hollow has rock around it as far as the bubbles see
             double const middle = 0.5 * n - 0.5;
             return mean_share(n, sphere_bubble{.radius = double(r)}, [=](voxel v) {
@@ -118,9 +120,10 @@ TEST_CASE("on a sphere the share of air tends to 1/2 + 3 r / (16 R), and to 1/2 
 TEST_CASE("on a cylinder the share of air tends to 1/2 + 3 r / (32 R)") {
     refined const seen([](int r) {  // R = 4 r
         double const middle = 4.0 * r + 1.5;
-        return mean_share(8 * r + 4, sphere_bubble{.radius = double(r)},
-                          [=](voxel v) { return square(v.x - middle) + square(v.y - middle) < square(4.0 * r); },
-                          [](voxel v) { return v.z < 32; });
+        return mean_share(
+            8 * r + 4, sphere_bubble{.radius = double(r)},
+            [=](voxel v) { return square(v.x - middle) + square(v.y - middle) < square(4.0 * r); },
+            [](voxel v) { return v.z < 32; });
     });
     INFO(seen.share[0] << " " << seen.share[1] << " " << seen.share[2]);
     CHECK(seen.limit() == Approx(0.5 + 3.0 / 128).margin(0.003));
@@ -130,9 +133,10 @@ TEST_CASE("on a cylinder the share of air tends to 1/2 + 3 r / (32 R)") {
 TEST_CASE("on a saddle of equal and opposite curvatures the share of air tends to one half") {
     refined const seen([](int r) {  // curvatures 1 / (4 r)
         double const middle = 4.0 * r;
-        return mean_share(8 * r, sphere_bubble{.radius = double(r)}, [=](voxel v) {
-            return v.z - middle < (square(v.x - middle) - square(v.y - middle)) / (8.0 * r);
-        }, [=](voxel v) { return std::abs(v.x - 4 * r) < r / 2 && std::abs(v.y - 4 * r) < r / 2; });
+        return mean_share(
+            8 * r, sphere_bubble{.radius = double(r)},
+            [=](voxel v) { return v.z - middle < (square(v.x - middle) - square(v.y - middle)) / (8.0 * r); },
+            [=](voxel v) { return std::abs(v.x - 4 * r) < r / 2 && std::abs(v.y - 4 * r) < r / 2; });
     });
     INFO(seen.share[0] << " " << seen.share[1] << " " << seen.share[2]);
     CHECK(seen.limit() == Approx(0.5).margin(0.004));

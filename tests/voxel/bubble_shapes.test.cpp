@@ -82,9 +82,9 @@ TEST_CASE("an ellipsoid is as long as each of its semi-axes") {
 
 TEST_CASE("a gumdrop is a dome on a flat base with as much below its centre as above") {
     bubble_stencil const g = gumdrop_bubble{.radius = 9};
-    CHECK((g.contains(0, 0, 8) && !g.contains(0, 0, 9)));      // the dome
-    CHECK((g.contains(8, 3, -5) && !g.contains(8, 3, 5)));     // the base is as wide as the dome's foot
-    CHECK((g.contains(0, 0, -5) && !g.contains(0, 0, -6)));    // flat side down
+    CHECK((g.contains(0, 0, 8) && !g.contains(0, 0, 9)));    // the dome
+    CHECK((g.contains(8, 3, -5) && !g.contains(8, 3, 5)));   // the base is as wide as the dome's foot
+    CHECK((g.contains(0, 0, -5) && !g.contains(0, 0, -6)));  // flat side down
     CHECK((g.contains(8, 3, -5) && !g.contains(8, 3, -6)));
     std::uint32_t above = 0;
     std::uint32_t below = 0;

@@ -14,11 +14,13 @@ TEST_CASE("a stencil holds the voxels that its shape contains, and no other") {
         stream random(3, stage::user, t);
         double const r = t % 4 == 0 ? random.uniform(17, 48) : random.uniform(1, 16);
         std::uint64_t const salt = random.index_below(1000000);
-        predicate_bubble const shape{[r, salt](vec3 const& o) {
-            auto const key = static_cast<std::uint64_t>((o[0] + 50) + 101 * (o[1] + 50) + 10201 * (o[2] + 50));
-            stream s(salt, stage::user, key);
-            return squared_length(o) < r * r && s.chance(0.4);
-        }, r};
+        predicate_bubble const shape{
+            [r, salt](vec3 const& o) {
+                auto const key = static_cast<std::uint64_t>((o[0] + 50) + 101 * (o[1] + 50) + 10201 * (o[2] + 50));
+                stream s(salt, stage::user, key);
+                return squared_length(o) < r * r && s.chance(0.4);
+            },
+            r};
         bubble_stencil const stencil = shape;
         std::uint32_t size = 0;
         int reach = 0;

@@ -15,9 +15,7 @@ struct bubble {
     explicit bubble(int) {}
     bubble(bubble const&) = default;
     bubble& operator=(bubble const&) = delete;
-    [[nodiscard]] bool contains(vec3 const& o) const {
-        return o[0] == 2 && o[1] * o[1] < 9 && o[2] * o[2] < 9;
-    }
+    [[nodiscard]] bool contains(vec3 const& o) const { return o[0] == 2 && o[1] * o[1] < 9 && o[2] * o[2] < 9; }
     [[nodiscard]] double reach() const { return 2; }
 };
 

@@ -28,7 +28,8 @@ struct bubble_layer {
 /// several bubbles the field chooses as in `bubble_mixture` [Jones et al., section 5, Figures 7 and 18].
 /// Every member may be edited between steps. Models `bubble_choice`.
 ///
-/// `bubble_profile{.bubbles = {sphere_bubble{4}, disc_bubble{3}}, .layers = {{.top = 10, .mix = {1}}, {.mix = {0, 1}}}}`
+/// `bubble_profile{.bubbles = {sphere_bubble{4}, disc_bubble{3}}, .layers = {{.top = 10, .mix = {1}}, {.mix = {0,
+/// 1}}}}`
 template <scalar_field Field = gradient_noise>
 struct bubble_profile {
     std::vector<bubble_stencil> bubbles{};  ///< 1 .. 65536
@@ -49,9 +50,10 @@ struct bubble_profile {
         return mix.size() < 2 ? mix[0] : mix[detail::equal_interval(field(p), lowest, highest, mix.size())];
     }
 
-    /// \throws invalid_input  `empty_input` for no bubble, no layer or an empty mix; `size_overflow` for more than 65536
-    ///         bubbles; `index_out_of_range` for a mix that names a bubble there is not; `bad_parameter` for tops that do
-    ///         not ascend, `up` that is not of unit length, an empty range; what the field's `validate` throws.
+    /// \throws invalid_input  `empty_input` for no bubble, no layer or an empty mix; `size_overflow` for more than
+    /// 65536
+    ///         bubbles; `index_out_of_range` for a mix that names a bubble there is not; `bad_parameter` for tops that
+    ///         do not ascend, `up` that is not of unit length, an empty range; what the field's `validate` throws.
     void validate() const {
         detail::require_bubbles("bubble_profile.bubbles", bubbles.size());
         detail::require_interval("bubble_profile", lowest, highest);
@@ -69,10 +71,11 @@ struct bubble_profile {
             }
             double const below = i == 0 ? -std::numeric_limits<double>::infinity() : layers[i - 1].top;
             if (!(layers[i].top > below)) {
-                detail::fail<invalid_input>(errc::bad_parameter,
-                                            name + ".top: got " + detail::number_text(layers[i].top) +
-                                                ", needs more than that of the layer below, " + detail::number_text(below),
-                                            {.kind = entity::parameter, .index = i, .value = layers[i].top, .limit = below});
+                detail::fail<invalid_input>(
+                    errc::bad_parameter,
+                    name + ".top: got " + detail::number_text(layers[i].top) +
+                        ", needs more than that of the layer below, " + detail::number_text(below),
+                    {.kind = entity::parameter, .index = i, .value = layers[i].top, .limit = below});
             }
         }
         if constexpr (requires { field.validate(); }) field.validate();

@@ -26,13 +26,13 @@ class bubble_stencil {
 public:
     static constexpr int widest = 48;  ///< voxels, farthest along an axis
 
-    using row = detail::stencil_row;           ///< dx, dy and a bit dz + `widest` per voxel
+    using row = detail::stencil_row;  ///< dx, dy and a bit dz + `widest` per voxel
 
     /// O(reach^3) questions. \throws invalid_input  what the shape's `validate` throws; `bad_parameter` for a reach
     /// that is not in 0 .. 48; `empty_input` for a bubble that holds no voxel.
     template <class S>
-        requires(!std::same_as<S, bubble_stencil>) && bubble_shape<S>
-    explicit(false) bubble_stencil(S const& shape) {
+        requires(!std::same_as<S, bubble_stencil>)
+    &&bubble_shape<S> explicit(false) bubble_stencil(S const& shape) {
         if constexpr (requires { shape.validate(); }) shape.validate();
         double const reach = shape.reach();
         detail::require_range("bubble_stencil: reach of the bubble", reach, 0, widest);

@@ -31,7 +31,9 @@ public:
 
     /// Whether a change can matter to the bubbles of a brick that reach so far. O(1).
     [[nodiscard]] static bool concerns(voxel_change const& c, voxel brick_corner, int reach) noexcept {
-        auto const close = [reach](std::int32_t at, std::int32_t low) { return at >= low - reach && at < low + 32 + reach; };
+        auto const close = [reach](std::int32_t at, std::int32_t low) {
+            return at >= low - reach && at < low + 32 + reach;
+        };
         return (c.before == voxel_state::air) != (c.after == voxel_state::air) && close(c.at.x, brick_corner.x) &&
                close(c.at.y, brick_corner.y) && close(c.at.z, brick_corner.z);
     }
@@ -86,9 +88,8 @@ public:
             for (voxel_change const& c : changes) {
                 if (!concerns(c, brick_corner, bubbles[b].reach())) continue;
                 std::uint32_t const delta = c.after == voxel_state::air ? 1U : ~0U;
-                for_each_image(grid, c.at, bubbles[b].reach(), [&](voxel at) {
-                    tell(at - brick_corner, delta, bubbles[b], skin);
-                });
+                for_each_image(grid, c.at, bubbles[b].reach(),
+                               [&](voxel at) { tell(at - brick_corner, delta, bubbles[b], skin); });
             }
         }
     }

@@ -79,8 +79,8 @@ private:
         for (int y = -margin; y < 32 + margin; ++y) {
             for (int x = -margin; x < 32 + margin; ++x) {
                 std::array<std::uint64_t, 2> row{};
-                bool const beside = static_cast<std::size_t>(low.x + x) >= n[0] ||
-                                    static_cast<std::size_t>(low.y + y) >= n[1];
+                bool const beside =
+                    static_cast<std::size_t>(low.x + x) >= n[0] || static_cast<std::size_t>(low.y + y) >= n[1];
                 for (int dz = -2; dz <= 2; ++dz) {
                     if (beside || (low.z >> 5) + dz < 0 || (low.z >> 5) + dz >= bricks[2]) continue;
                     voxel const v{low.x + x, low.y + y, low.z + 32 * dz};

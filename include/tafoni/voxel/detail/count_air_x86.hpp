@@ -26,8 +26,8 @@ namespace isa_avx512 {
 // Forms with a mask of ones: g++ 12 warns of those without one (its bug 105593), and makes the same code of both.
 
 TAFONI_AVX512 inline __m128i halves_32(__m512i v) noexcept {
-    __m256i const half = _mm256_add_epi32(_mm512_maskz_extracti64x4_epi64(0xF, v, 0),
-                                          _mm512_maskz_extracti64x4_epi64(0xF, v, 1));
+    __m256i const half =
+        _mm256_add_epi32(_mm512_maskz_extracti64x4_epi64(0xF, v, 0), _mm512_maskz_extracti64x4_epi64(0xF, v, 1));
     return _mm_add_epi32(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
 }
 
@@ -80,7 +80,8 @@ struct wide_rows {
         __m512i const low = _mm512_loadu_si512(at);
         __m512i const high = _mm512_loadu_si512(at + air_rows::wide_plane);
         __m128i const up = _mm_sub_epi64(_mm_cvtsi32_si128(64), z);  // by 64: nothing is left
-        __m512i const rows = _mm512_or_si512(_mm512_maskz_srl_epi64(0xFF, low, z), _mm512_maskz_sll_epi64(0xFF, high, up));
+        __m512i const rows =
+            _mm512_or_si512(_mm512_maskz_srl_epi64(0xFF, low, z), _mm512_maskz_sll_epi64(0xFF, high, up));
         __m512i const above = _mm512_maskz_srl_epi64(0xFF, high, z);
         sum = _mm512_add_epi64(sum, _mm512_popcnt_epi64(_mm512_and_si512(rows, mask)));
         sum = _mm512_add_epi64(sum, _mm512_popcnt_epi64(_mm512_and_si512(above, mask_above)));

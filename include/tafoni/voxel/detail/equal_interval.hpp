@@ -10,7 +10,8 @@
 
 namespace tafoni::detail {
 
-/// Of n equal intervals of [lowest, highest] the one that holds the value, those at the ends being open; NaN: the first.
+/// Of n equal intervals of [lowest, highest] the one that holds the value, those at the ends being open; NaN: the
+/// first.
 [[nodiscard]] inline std::size_t equal_interval(double value, double lowest, double highest, std::size_t n) noexcept {
     double const share = (value - lowest) / (highest - lowest);
     if (!(share > 0)) return 0;
@@ -34,10 +35,10 @@ inline void require_interval(std::string const& owner, double lowest, double hig
     require_range((owner + ".lowest").c_str(), lowest, -1e150, 1e150);
     require_range((owner + ".highest").c_str(), highest, -1e150, 1e150);
     if (!(lowest < highest)) {
-        fail<invalid_input>(errc::bad_parameter,
-                            owner + ".highest: got " + number_text(highest) + ", needs more than lowest, " +
-                                number_text(lowest),
-                            {.kind = entity::parameter, .value = highest, .limit = lowest});
+        fail<invalid_input>(
+            errc::bad_parameter,
+            owner + ".highest: got " + number_text(highest) + ", needs more than lowest, " + number_text(lowest),
+            {.kind = entity::parameter, .value = highest, .limit = lowest});
     }
 }
 

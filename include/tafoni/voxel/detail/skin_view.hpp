@@ -25,7 +25,7 @@ using brick_position = std::uint16_t;
 /// Views of equal length (`bubble` may be empty: all 0); record i belongs to the voxel at `position[i]`.
 struct skin_view {
     std::span<brick_position const> position{};  ///< in any order, none twice; fastest where ascending
-    std::span<std::uint16_t const> bubble{};       ///< the stencil of each
+    std::span<std::uint16_t const> bubble{};     ///< the stencil of each
     std::span<std::uint32_t> air{};              ///< voxels of air in its bubble: written or updated
 
     [[nodiscard]] std::size_t bubble_of(std::size_t i) const noexcept { return bubble.empty() ? 0 : bubble[i]; }

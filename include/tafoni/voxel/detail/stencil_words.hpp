@@ -94,7 +94,8 @@ public:
     [[nodiscard]] std::span<word const> words() const noexcept { return words_; }
     /// Rows of those whose bubble holds the centre.
     [[nodiscard]] std::span<stencil_row const> mirrored() const noexcept { return mirrored_; }
-    /// 16 narrow or 8 medium rows each, beginning at `block_offsets`; of 8 wide rows first the low, then the high words.
+    /// 16 narrow or 8 medium rows each, beginning at `block_offsets`; of 8 wide rows first the low, then the high
+    /// words.
     [[nodiscard]] std::span<block const> blocks() const noexcept { return blocks_; }
     [[nodiscard]] std::span<std::int32_t const> block_offsets() const noexcept { return block_offsets_; }
 

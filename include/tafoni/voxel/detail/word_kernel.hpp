@@ -49,7 +49,8 @@ private:
         for (std::size_t i = 0; i < t.position.size(); ++i) {
             std::uint64_t const* const at = t.rows.medium(t.position[i]);
             int const z = t.position[i] & 31;
-            t.solid[i] = sum(t.bubble.words(), [at, z](stencil_words::word const& w) { return at[w.offset] >> z & w.mask; });
+            t.solid[i] =
+                sum(t.bubble.words(), [at, z](stencil_words::word const& w) { return at[w.offset] >> z & w.mask; });
         }
     }
     [[gnu::always_inline]] static inline void wide(count_task const& t) {
