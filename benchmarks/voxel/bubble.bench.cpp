@@ -167,6 +167,12 @@ BENCHMARK_CAPTURE(recount, popcnt, kernel_set::popcnt)
     ->Arg(16)
     ->Arg(32)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(recount, avx2, kernel_set::avx2)
+    ->Name("voxel/bubble/recount/avx2/r")
+    ->Arg(3)
+    ->Arg(7)
+    ->Arg(16)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(recount, avx512, kernel_set::avx512)
     ->Name("voxel/bubble/recount/avx512/r")
     ->Arg(3)

@@ -19,7 +19,7 @@ namespace {
 
 std::vector<kernel_set> kernels_of_this_machine() {
     std::vector<kernel_set> out;
-    for (auto const k : {kernel_set::portable, kernel_set::popcnt, kernel_set::avx512}) {
+    for (auto const k : {kernel_set::portable, kernel_set::popcnt, kernel_set::avx2, kernel_set::avx512}) {
         if (k <= detail::best_kernel_set()) out.push_back(k);
     }
     return out;
@@ -53,11 +53,13 @@ bubble_stencil random_bubble(stream& random) {
         case 2: return disc_bubble{.radius = r, .thickness = 1 + 2.0 * static_cast<double>(random.index_below(4))};
         case 3: {
             std::uint64_t const salt = random.index_below(1u << 30);
-            return predicate_bubble{[salt](vec3 const& o) {
-                auto const key = static_cast<std::uint64_t>((o[0] + 50) + 101 * (o[1] + 50) + 10201 * (o[2] + 50));
-                stream s(salt, stage::user, key);
-                return s.chance(0.3) || squared_length(o) == 0;
-            }, r};
+            return predicate_bubble{
+                [salt](vec3 const& o) {
+                    auto const key = static_cast<std::uint64_t>((o[0] + 50) + 101 * (o[1] + 50) + 10201 * (o[2] + 50));
+                    stream s(salt, stage::user, key);
+                    return s.chance(0.3) || squared_length(o) == 0;
+                },
+                r};
         }
         default: return sphere_bubble{.radius = r};
     }
@@ -171,9 +173,12 @@ TEST_CASE("every reach up to 48 is counted right, also where bubbles of several 
     std::vector<bubble_stencil> bubbles;
     for (int reach = 0; reach <= 48; ++reach) {  // its corners and a few of the voxels between
         bubbles.push_back(predicate_bubble{[reach](vec3 const& o) {
-            auto const key = static_cast<int>(o[0] + 3 * o[1] + 9 * o[2]);
-            return (std::fabs(o[0]) == reach && std::fabs(o[1]) == reach && std::fabs(o[2]) == reach) || key % 17 == 0;
-        }, double(reach)});
+                                               auto const key = static_cast<int>(o[0] + 3 * o[1] + 9 * o[2]);
+                                               return (std::fabs(o[0]) == reach && std::fabs(o[1]) == reach &&
+                                                       std::fabs(o[2]) == reach) ||
+                                                      key % 17 == 0;
+                                           },
+                                           double(reach)});
         REQUIRE(bubbles.back().reach() == reach);
     }
     records r(grid, bubbles.size(), 0, random);
@@ -231,7 +236,8 @@ TEST_CASE("an update leads to the same counts whichever way it takes") {
     for (std::size_t const n : {1u, 3u, 10u, 100u, 1000u, 2u, 4000u, 0u}) {
         auto changes = random_changes(grid, n, random);
         std::erase_if(changes, [&](voxel_change const& c) {
-            return !detail::air_counter::concerns(c, grid.brick_corner(r.brick), detail::air_counter::reach_of(bubbles));
+            return !detail::air_counter::concerns(c, grid.brick_corner(r.brick),
+                                                  detail::air_counter::reach_of(bubbles));
         });
         (counter.recount_is_cheaper(bubbles, r.view(), changes.size()) ? many : few) = true;
         counter.update(grid, r.brick, bubbles, r.view(), changes);
@@ -256,7 +262,8 @@ TEST_CASE("a change that leaves a voxel solid, or is too far, tells nobody") {
 TEST_CASE("counts of a bubble that any symmetry of the cube maps to itself commute with the 48 symmetries") {
     constexpr int n = 36;
     auto const rock = [](voxel v) {
-        return (v.x - 11) * (v.x - 11) + 2 * (v.y - 20) * (v.y - 20) + (v.z - 14) * (v.z - 9) < 130 || (v.x * v.y + v.z) % 13 == 0;
+        return (v.x - 11) * (v.x - 11) + 2 * (v.y - 20) * (v.y - 20) + (v.z - 14) * (v.z - 9) < 130 ||
+               (v.x * v.y + v.z) % 13 == 0;
     };
     bubble_stencil const bubble = sphere_bubble{.radius = 5.5};
     detail::air_counter counter;

@@ -135,6 +135,7 @@ private:
     /// Of all words of a bubble, once.
     [[nodiscard]] std::size_t word_cost(stencil_words const& words) const noexcept {
         if (kernels_ == kernel_set::avx512) return 3 * words.blocks().size() / 2;
+        if (kernels_ == kernel_set::avx2 && words.kind() != stencil_words::layout::wide) return 4 * words.blocks().size();
         return kernels_ == kernel_set::portable ? 4 * words.words().size() : words.words().size();
     }
 

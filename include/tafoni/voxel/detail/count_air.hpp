@@ -7,6 +7,7 @@
 #include <tafoni/voxel/detail/word_kernel.hpp>
 
 #if defined(__x86_64__) && defined(__GNUC__)
+#include <tafoni/voxel/detail/count_air_avx2.hpp>
 #include <tafoni/voxel/detail/count_air_x86.hpp>
 #endif
 
@@ -17,6 +18,7 @@ namespace tafoni::detail {
 inline void count_solid(count_task const& t, kernel_set set = best_kernel_set()) {
 #if defined(__x86_64__) && defined(__GNUC__)
     if (set == kernel_set::avx512) return isa_avx512::count_solid(t);
+    if (set == kernel_set::avx2) return isa_avx2::count_solid(t);
     if (set != kernel_set::portable) return isa_popcnt::count_solid(t);
 #endif
     static_cast<void>(set);

@@ -11,6 +11,7 @@ namespace tafoni::detail {
 enum class kernel_set : std::uint8_t {
     portable,  ///< C++, for the flags that the host compiles with
     popcnt,    ///< x86-64 with POPCNT and BMI2 (2013 on)
+    avx2,      ///< and with AVX2
     avx512     ///< x86-64 with AVX-512 F, BW and VPOPCNTDQ (2019 on)
 };
 
@@ -23,8 +24,8 @@ enum class kernel_set : std::uint8_t {
             __builtin_cpu_supports("avx512vpopcntdq")) {
             return kernel_set::avx512;
         }
-        return __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi2") ? kernel_set::popcnt
-                                                                                  : kernel_set::portable;
+        if (!__builtin_cpu_supports("popcnt") || !__builtin_cpu_supports("bmi2")) return kernel_set::portable;
+        return __builtin_cpu_supports("avx2") ? kernel_set::avx2 : kernel_set::popcnt;
     }();
     return best;
 #else
