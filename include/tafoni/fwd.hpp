@@ -18,12 +18,19 @@ struct link_view;
 struct water;
 struct link_scale;
 struct part;
+struct voxel;
+struct grid_frame;
+class dense_grid;
+class sparse_grid;
 template <class Mesh>
 struct mesh_access;
+template <class Grid>
+struct grid_access;
 
 enum class errc : std::uint16_t;
 enum class link_state : std::uint8_t;
 enum class cell_state : std::uint8_t;
+enum class voxel_state : std::uint8_t;
 
 }  // namespace tafoni
 

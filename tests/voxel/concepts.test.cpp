@@ -8,6 +8,7 @@
 #include <tafoni/voxel/dense_grid.hpp>
 #include <tafoni/voxel/span_grid.hpp>
 #include <tafoni/voxel/sparse_grid.hpp>
+#include <tafoni/voxel/voxel_surface.hpp>
 
 using namespace tafoni;
 
@@ -105,6 +106,7 @@ TEST_CASE("archetypes of grids keep the laws, and everything that takes a grid c
     copy_states(reading, writing);
     CHECK(writing.states[0] == voxel_state::rock);
     CHECK(voxel_cells::from_grid(reading).cell_count() == 48);
+    CHECK(extract_voxel_surface(reading) == extract_voxel_surface(sparse_grid::copy_of(reading)));
 }
 
 TEST_CASE("states are copied between grids of any two kinds") {

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <tafoni/testing/archetypes.hpp>
+#include <tafoni/testing/voxel_laws.hpp>
 #include <tafoni/voxel/copy_states.hpp>
 #include <tafoni/voxel/dense_grid.hpp>
 #include <tafoni/weathering/erase_fallen.hpp>
@@ -136,6 +137,20 @@ TEST_CASE("voxels that are rock no more keep what they hold") {
     CHECK(erase_fallen(run, mine) == 1);
     CHECK(states_of(mine)[1 + 4 * (1 + 3 * 3)] == 2);
     CHECK(states_of(mine)[2 + 4 * (2 + 3 * 3)] == 0);
+}
+
+TEST_CASE("the least grid weathers by frost and by bubbles: nothing asks for more than its concept") {
+    archetypes::voxel_grid const grid;
+    voxel_run run(grid, voxel_weathering{}, {.up = up_axis::plus_z, .colluvium = repose_rule{}});
+    CHECK(run.report().voxels_initial == 48);
+    CHECK(run.run({.phases = {{.steps = 3, .spheroidal = 100}}}).voxels_rock < 48);
+    voxel_cells const cells = voxel_cells::from_grid(grid);
+    frost_run frost(cells, frost_wedging{});
+    frost.mark(cells.cell_at(0, 0, 3), cell_state::air);
+    archetypes::editable_voxel_grid mine;
+    CHECK(erase_fallen(frost, mine) == 1);
+    copy_states(run.grid(), mine);
+    CHECK(laws::editable_voxel_grid(mine).empty());
 }
 
 TEST_CASE("a grid of another size than the run's is refused") {
