@@ -333,7 +333,7 @@ TEST_CASE("joints and friction decide as the rules say of the grid, batch after 
 
 TEST_CASE("across bricks, solid or not, rock falls as a full relabel by voxels says", "[rockfall]") {
     std::size_t fallen = 0;
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
         fallen += compare_large(seed, {70, 40, 65}, seed % 2 == 0 ? 8 : 32, seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
         fallen += compare_large(seed, {70, 40, 65}, seed % 2 == 0 ? 32 : 16,
                                 {.joints = random_cracks(seed, 5, 20), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
@@ -342,15 +342,15 @@ TEST_CASE("across bricks, solid or not, rock falls as a full relabel by voxels s
 }
 
 TEST_CASE("many more random rocks fall as a full relabel by voxels says", "[rockfall][slow]") {
-    for (std::uint64_t seed = 1000; seed < 1500; ++seed) {
-        double const density = 0.3 + 0.0014 * static_cast<double>(seed - 1000);
+    for (std::uint64_t seed = 1000; seed < 1350; ++seed) {
+        double const density = 0.3 + 0.002 * static_cast<double>(seed - 1000);
         compare_with_oracle(seed, {9, 7, 8}, 1 + seed % 23, 12, seed % 3 == 0 ? no_ground : rockfall_options{}, density);
         compare_with_oracle(seed, {10, 9, 11}, 1 + seed % 23, 8,
                             {.joints = random_cracks(seed, 1 + seed % 12, 1 + static_cast<double>(seed % 5) * 4),
                              .friction_angle = static_cast<double>(seed % 4) * 20},
                             density, static_cast<up_axis>(seed % 6));
     }
-    for (std::uint64_t seed = 100; seed < 115; ++seed) {
+    for (std::uint64_t seed = 100; seed < 110; ++seed) {
         compare_large(seed, {100, 70, 66}, seed % 3 == 0 ? 8 : seed % 3 == 1 ? 16 : 32, seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
         compare_large(seed, {70, 70, 66}, seed % 2 == 0 ? 32 : 8,
                       {.joints = random_cracks(seed, 1 + seed % 9, 30), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
