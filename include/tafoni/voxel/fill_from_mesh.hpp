@@ -66,6 +66,22 @@ struct capped_surface {
     return to;
 }
 
+/// Inside a closed chain; 0 for flat sheets, whatever the rounding. O(n).
+[[nodiscard]] inline double volume_of(capped_surface const& s) {
+    if (s.triangles.empty()) return 0;
+    vec3 const base = s.positions[s.triangles[0][0]];
+    double sum = 0;
+    double size = 0;
+    for (auto const& list : {&s.triangles, &s.caps}) {
+        for (auto const& t : *list) {
+            double const six = dot(s.positions[t[0]] - base, cross(s.positions[t[1]] - base, s.positions[t[2]] - base));
+            sum += six;
+            size += std::fabs(six);
+        }
+    }
+    return std::fabs(sum) <= 1e-10 * size ? 0.0 : sum / 6;
+}
+
 /// Cuts the faces into triangles and closes what they leave open. O(n log n).
 template <polygon_mesh M>
 [[nodiscard]] capped_surface cap_holes(char const* who, M const& mesh) {
@@ -129,9 +145,13 @@ template <polygon_mesh M>
         for (; sum < 0; ++sum) open.emplace_back(sides[first].high, sides[first].low);
     }
     out.report.boundary_edges = open.size();
-    if (open.empty()) return out;
+    if (open.empty()) {
+        out.report.volume = volume_of(out);
+        return out;
+    }
 
-    // Each connected boundary gets its apex in the middle of its edges.
+    // Each connected boundary gets its apex near the middle of its edges. Not in it: the middle of a tidy hole
+    // lies on lines of voxels, and a lid in a plane of them.
     std::vector<std::uint32_t> root(copy.vertex_count());
     std::iota(root.begin(), root.end(), 0U);
     auto const find = [&root](std::uint32_t v) {
@@ -159,6 +179,18 @@ template <polygon_mesh M>
         vec3 const middle = vec3(0.5 * copy.positions[a] + 0.5 * copy.positions[b]);
         out.positions[own] += vec3((middle - out.positions[own]) / edges[hole]);
         out.caps.push_back({own, b, a});
+    }
+    out.report.volume = volume_of(out);
+    std::vector<box3> around(edges.size());
+    for (std::size_t e = 0; e < open.size(); ++e) {
+        box3& box = around[out.caps[e][0] - copy.vertex_count()];
+        box.include(copy.positions[open[e].first]);
+        box.include(copy.positions[open[e].second]);
+    }
+    for (std::size_t hole = 0; hole < edges.size(); ++hole) {
+        vec3 const extent = around[hole].extent();
+        double const longest = std::max({extent[0], extent[1], extent[2]});
+        out.positions[copy.vertex_count() + hole] += vec3{0.0337519 * longest, -0.0194823 * longest, 0.0454187 * longest};
     }
     out.report.holes = edges.size();
     return out;
@@ -189,7 +221,6 @@ struct fill_from_mesh_fn {
         std::vector<row_crossings::corner> corners;
         corners.reserve(surface.positions.size());
         for (vec3 const& p : surface.positions) corners.push_back(rows.place(p));
-        surface.report.volume = volume_of(surface);
         if (surface.report.volume < 0) {
             fail<bad_topology>(errc::inverted_orientation,
                                std::string(who) + ": the surface encloses a negative volume, " +
@@ -203,24 +234,6 @@ struct fill_from_mesh_fn {
         hole_levels least(rows, target.size(), frame.spacing, corners, surface.caps);
         surface.report.rock = fill_bricks(target, rows, least);
         return surface.report;
-    }
-
-private:
-    [[nodiscard]] static double volume_of(capped_surface const& s) {
-        if (s.triangles.empty()) return 0;
-        vec3 const base = s.positions[s.triangles[0][0]];
-        double six = 0;
-        for (auto const& list : {&s.triangles, &s.caps}) {
-            for (auto const& t : *list) {
-                six += dot(s.positions[t[0]] - base, cross(s.positions[t[1]] - base, s.positions[t[2]] - base));
-            }
-        }
-        // Flat sheets enclose nothing, but for the rounding of the sum.
-        double scale = 0;
-        for (auto const& t : s.triangles) {
-            scale += std::fabs(dot(s.positions[t[0]] - base, cross(s.positions[t[1]] - base, s.positions[t[2]] - base)));
-        }
-        return std::fabs(six) <= 1e-10 * scale ? 0.0 : six / 6;
     }
 };
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
@@ -24,7 +25,8 @@ namespace tafoni::detail {
 /// share S of the full sphere that the caps take up. S is smooth off the caps, and its gradient is
 /// at most sum(length / distance^2) / 4 pi over the edges of the holes (Biot and Savart's law): where that
 /// bound keeps S within one level all over a block, one evaluation decides the block. Others are halved, down to
-/// single voxels. Asked as `fill_bricks` does.
+/// single voxels. No centre of a voxel may lie on a cap, where S jumps: `cap_holes` puts the apexes out of
+/// the way. Asked as `fill_bricks` does.
 class hole_levels {
 public:
     /// A triangle of a cap: the apex of its hole, and an edge of the hole, as indices of `corners`.
@@ -32,14 +34,14 @@ public:
 
     /// `size`: voxels along the turned axes; `spacing`: as the frame's.
     hole_levels(row_crossings const& rows, std::array<std::size_t, 3> const& size, vec3 const& spacing,
-                std::vector<row_crossings::corner> corners, std::vector<cap> caps)
-        : rows_(rows), size_(size), corners_(std::move(corners)), caps_(std::move(caps)) {
+                std::vector<row_crossings::corner> const& corners, std::vector<cap> caps)
+        : rows_(rows), size_(size), caps_(std::move(caps)) {
         double const largest = std::max({spacing[0], spacing[1], spacing[2]});
         for (std::size_t d = 0; d < 3; ++d) {
             scale_[d] = spacing[static_cast<Eigen::Index>(rows.axes().axis[d])] / largest;
         }
-        places_.reserve(corners_.size());
-        for (auto const& c : corners_) places_.push_back(place_of(c.x, static_cast<double>(c.y), static_cast<double>(c.z)));
+        places_.reserve(corners.size());
+        for (auto const& c : corners) places_.push_back(place_of(c.x, static_cast<double>(c.y), static_cast<double>(c.z)));
         for (cap const& t : caps_) {
             vec3 const& a = places_[t[0]];
             vec3 const& b = places_[t[1]];
@@ -70,8 +72,7 @@ public:
 private:
     static constexpr double pi = 0x1.921fb54442d18p+1;
     static constexpr double one = static_cast<double>(row_crossings::one);
-    static constexpr double tie = 0x1p-30;   ///< of a winding number: 1/2 less this is 1/2
-    static constexpr double thin = 0x1p-30;  ///< of a voxel: nearer to a cap than this, the row says on which side
+    static constexpr double tie = 0x1p-30;  ///< of a winding number: 1/2 less this is 1/2
 
     struct shape {
         vec3 normal;  ///< not of unit length
@@ -101,8 +102,7 @@ private:
 
     void split(voxel low, std::int32_t edge) {
         if (edge == 1) {
-            auto const at = in_rows(low);
-            set(low, 1, level_of(share(centre_of(at), &at)));
+            set(low, 1, level_of(share(centre_of(in_rows(low)))));
             return;
         }
         std::int32_t const half = edge / 2;
@@ -149,7 +149,7 @@ private:
             if (slope * radius > 2 * pi) return false;
         }
         double const change = slope * radius / (4 * pi) * 1.001 + 0x1p-36;
-        double const here = share(centre, nullptr);
+        double const here = share(centre);
         level_ = level_of(here - change);
         return level_ == level_of(here + change);
     }
@@ -175,9 +175,8 @@ private:
         return length(p - a - t * along);
     }
 
-    /// Solid angle of all caps over that of the sphere, positive from behind them. `at`: the voxel whose centre
-    /// `p` is, if it is one. O(edges of holes).
-    double share(vec3 const& p, std::array<std::int64_t, 3> const* at) {
+    /// Solid angle of all caps over that of the sphere, positive from behind them. O(edges of holes).
+    double share(vec3 const& p) {
         for (std::size_t v = 0; v < places_.size(); ++v) {
             offsets_[v] = places_[v] - p;
             lengths_[v] = length(offsets_[v]);
@@ -192,11 +191,8 @@ private:
             double const volume = dot(a, shapes_[t].normal);
             double const rest = lengths_[i] * lengths_[j] * lengths_[k] + dot(a, b) * lengths_[k] +
                                 dot(b, c) * lengths_[i] + dot(c, a) * lengths_[j];
-            int side = volume < 0 ? -1 : 1;
-            if (at != nullptr && rest < 0 && std::fabs(volume) <= thin * shapes_[t].double_area) {
-                if (int const by_row = side_of(t, *at); by_row != 0) side = by_row;
-            }
-            halves += side * angle(std::fabs(volume), rest);
+            double const half = angle(std::fabs(volume), rest);
+            halves += volume < 0 ? -half : half;
         }
         return halves / (2 * pi);
     }
@@ -208,29 +204,9 @@ private:
         double const a = y <= wide ? 0.5 * pi - elementary::acos(std::min(y / h, 1.0)) : elementary::acos(std::min(wide / h, 1.0));
         return x < 0 ? pi - a : a;
     }
-    /// On which side of a cap a voxel's centre lies for its row: 1 behind, -1 before it, 0 cannot be told.
-    [[nodiscard]] int side_of(std::size_t t, std::array<std::int64_t, 3> const& at) const {
-        std::array<row_crossings::corner, 3> const c{corners_[caps_[t][0]], corners_[caps_[t][1]], corners_[caps_[t][2]]};
-        row_crossings::passage const pass = rows_.pass(c, at[1], at[2]);
-        if (pass.turn != 0) return at[0] >= pass.first ? pass.turn : -pass.turn;
-        // Seen edge-on no row passes it; rows count as shifted to lower y, as in `row_crossings`.
-        __extension__ using wide = __int128;
-        std::array<wide, 2> const u{c[1].y - c[0].y, c[1].z - c[0].z};
-        std::array<wide, 2> const v{c[2].y - c[0].y, c[2].z - c[0].z};
-        if (u[0] * v[1] != u[1] * v[0]) return 0;
-        std::array<wide, 2> const& e = u[0] != 0 || u[1] != 0 ? u : v;
-        vec3 const& n = shapes_[t].normal;
-        double const turn = n[1] * static_cast<double>(e[1]) - n[2] * static_cast<double>(e[0]);
-        wide const off = e[0] * (row_crossings::line(at[2]) - c[0].z) - e[1] * (row_crossings::line(at[1]) - c[0].y);
-        wide const side = off != 0 ? off : e[1];
-        if (turn == 0 || side == 0) return 0;
-        return (side > 0) == (turn > 0) ? 1 : -1;
-    }
-
     row_crossings const& rows_;
     std::array<std::size_t, 3> size_;
     std::array<double, 3> scale_{};
-    std::vector<row_crossings::corner> corners_;
     std::vector<cap> caps_;
     std::vector<vec3> places_{};
     std::vector<shape> shapes_{};

@@ -43,11 +43,6 @@ public:
         std::int64_t y = 0;  ///< in units of 1 / one, even
         std::int64_t z = 0;
     };
-    /// A place where a row passes a triangle.
-    struct passage {
-        std::int64_t first = 0;  ///< voxel beyond the surface, in 0 .. voxels of a row
-        int turn = 0;            ///< what the winding number changes by: 1 into the solid, -1 out; 0 none
-    };
 
     row_crossings(char const* who, grid_frame const& frame, row_axes const& axes = {})
         : who_(who), frame_(frame), axes_(axes) {
@@ -82,16 +77,6 @@ public:
     }
     /// Call after the last `add`. O(n log n).
     void sort() { std::sort(keys_.begin(), keys_.end()); }
-
-    /// How the row (j, k), unmirrored, passes a triangle.
-    [[nodiscard]] passage pass(std::array<corner, 3> const& t, std::int64_t j, std::int64_t k) const {
-        auto const [z_lo, z_hi] = std::minmax({t[0].z, t[1].z, t[2].z});
-        auto const [x_lo, x_hi] = std::minmax({t[0].x, t[1].x, t[2].x});
-        if (line(k) <= z_lo || line(k) >= z_hi) return {};
-        layer const at = cut_layer(t, line(k));
-        if (j < at.a.row || j >= at.b.row) return {};
-        return {beyond(at, j, x_lo, x_hi), at.turn};
-    }
 
     /// Crossings in the order of rows (j + rows along y times k), then along the row; mirrored as `axes` says.
     [[nodiscard]] std::vector<std::uint64_t> const& keys() const noexcept { return keys_; }
