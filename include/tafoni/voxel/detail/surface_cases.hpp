@@ -58,21 +58,21 @@ struct surface_loops {
 class surface_case_rule {
 public:
     /// Bit c of `solid` is corner c.
+    // Plain arrays: while compiling, every call of std::array's members takes as long as the step that it is for.
     static constexpr surface_loops loops(unsigned solid) {
         surface_loops out;
-        std::array<int, 12> next{};
-        for (int& n : next) n = -1;
+        int next[12] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = 0; side < 2; ++side) trace_face(solid, axis, side, next);
         }
-        std::array<bool, 12> seen{};
         std::uint8_t at = 0;
         for (int start = 0; start < 12; ++start) {
-            auto const s = static_cast<std::size_t>(start);
-            if (next[s] < 0 || seen[s]) continue;
-            for (std::size_t e = s; !seen[e]; e = static_cast<std::size_t>(next[e])) {
-                seen[e] = true;
+            if (next[start] < 0) continue;
+            for (int e = start; next[e] >= 0;) {
                 out.edges[at++] = static_cast<std::uint8_t>(e);
+                int const to = next[e];
+                next[e] = -1;
+                e = to;
             }
             out.first[++out.count] = at;
         }
@@ -83,11 +83,12 @@ public:
         surface_case out;
         surface_loops const found = loops(solid);
         for (std::size_t l = 0; l < found.count; ++l) {
-            std::array<int, 12> loop{};
-            std::size_t n = 0;
+            int loop[longest] = {};
+            int n = 0;
             for (std::size_t k = found.first[l]; k < found.first[l + 1]; ++k) {
-                out.crossed = static_cast<std::uint16_t>(out.crossed | 1U << found.edges[k]);
-                loop[n++] = found.edges[k];
+                loop[n] = found.edges[k];
+                out.crossed = static_cast<std::uint16_t>(out.crossed | 1U << loop[n]);
+                ++n;
             }
             cut(loop, n, out);
         }
@@ -96,21 +97,21 @@ public:
 
 private:
     static constexpr int never = 1 << 20;
+    static constexpr int longest = 7;  // edges of a loop
 
     /// Segments of one face: from where its border, run counter-clockwise seen from outside, enters the solid to where it leaves.
-    static constexpr void trace_face(unsigned solid, int axis, int side, std::array<int, 12>& next) {
+    static constexpr void trace_face(unsigned solid, int axis, int side, int (&next)[12]) {
         int const u = 1 << ((axis + 1) % 3);
         int const v = 1 << ((axis + 2) % 3);
         int const base = side << axis;
-        std::array<int, 4> const ring = side == 1 ? std::array<int, 4>{base, base | u, base | u | v, base | v}
-                                                  : std::array<int, 4>{base, base | v, base | u | v, base | u};
-        auto const filled = [&](std::size_t k) { return (solid >> ring[k & 3] & 1U) != 0; };
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (filled(k) || !filled(k + 1)) continue;
-            std::size_t last = k + 1;
-            while (filled(last + 1)) ++last;
-            next[static_cast<std::size_t>(cell_edge_between(ring[k & 3], ring[(k + 1) & 3]))] =
-                cell_edge_between(ring[last & 3], ring[(last + 1) & 3]);
+        int const ring[4] = {base, base | (side == 1 ? u : v), base | u | v, base | (side == 1 ? v : u)};
+        bool const filled[4] = {(solid >> ring[0] & 1U) != 0, (solid >> ring[1] & 1U) != 0, (solid >> ring[2] & 1U) != 0,
+                                (solid >> ring[3] & 1U) != 0};
+        for (int k = 0; k < 4; ++k) {
+            if (filled[k] || !filled[(k + 1) & 3]) continue;
+            int last = k + 1;
+            while (filled[(last + 1) & 3]) ++last;
+            next[cell_edge_between(ring[k], ring[(k + 1) & 3])] = cell_edge_between(ring[last & 3], ring[(last + 1) & 3]);
         }
     }
 
@@ -126,14 +127,14 @@ private:
     }
 
     /// The cheapest cut of a loop into triangles, found from short stretches of the loop to long ones.
-    static constexpr void cut(std::array<int, 12> const& loop, std::size_t n, surface_case& out) {
-        std::array<std::array<int, 12>, 12> cost{};
-        std::array<std::array<std::size_t, 12>, 12> apex{};
-        for (std::size_t span = 2; span < n; ++span) {
-            for (std::size_t i = 0; i + span < n; ++i) {
-                std::size_t const j = i + span;
+    static constexpr void cut(int const (&loop)[longest], int n, surface_case& out) {
+        int cost[longest][longest] = {};
+        int apex[longest][longest] = {};
+        for (int span = 2; span < n; ++span) {
+            for (int i = 0; i + span < n; ++i) {
+                int const j = i + span;
                 cost[i][j] = never * 4;
-                for (std::size_t k = i + 1; k < j; ++k) {
+                for (int k = i + 1; k < j; ++k) {
                     int const c = cost[i][k] + cost[k][j];
                     if (c >= cost[i][j]) continue;
                     cost[i][j] = c;
@@ -143,19 +144,28 @@ private:
             }
         }
         if (cost[0][n - 1] >= never) throw "a loop that cannot be cut without a diagonal in a face";
-        std::array<std::array<std::size_t, 2>, 24> open{};
-        std::size_t depth = 0;
-        open[depth++] = {0, n - 1};
-        while (depth != 0) {
-            auto const [i, j] = open[--depth];
+        int open[2 * longest][2] = {{0, n - 1}};
+        for (int depth = 1; depth != 0;) {
+            --depth;
+            int const i = open[depth][0];
+            int const j = open[depth][1];
             if (j - i < 2) continue;
-            std::size_t const k = apex[i][j];
-            std::array<int, 3> t{loop[i], loop[k], loop[j]};
-            while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
-            for (std::size_t c = 0; c < 3; ++c) out.triangles[out.count][c] = static_cast<std::uint8_t>(t[c]);
+            int const k = apex[i][j];
+            auto const a = static_cast<std::uint8_t>(loop[i]);
+            auto const b = static_cast<std::uint8_t>(loop[k]);
+            auto const c = static_cast<std::uint8_t>(loop[j]);
+            if (a < b && a < c) {
+                out.triangles[out.count] = {a, b, c};
+            } else if (b < c) {
+                out.triangles[out.count] = {b, c, a};
+            } else {
+                out.triangles[out.count] = {c, a, b};
+            }
             ++out.count;
-            open[depth++] = {k, j};
-            open[depth++] = {i, k};
+            open[depth][0] = k;
+            open[depth++][1] = j;
+            open[depth][0] = i;
+            open[depth++][1] = k;
         }
     }
 };
