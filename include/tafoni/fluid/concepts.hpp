@@ -16,7 +16,7 @@ namespace tafoni {
 struct boundary_contact {
     std::uint32_t face = 0;
     vec3 normal{0, 0, 0};  ///< of the face, unit, out of the solid
-    double distance = 0;   ///< from the particle, >= 0, length unit
+    double distance = 0;   ///< of the particle from the face, length unit; negative behind it, inside the solid
 };
 
 namespace detail {
@@ -27,8 +27,10 @@ struct contact_archetype {
 
 /// What a fluid asks about walls.
 ///
-/// Laws: pure between two changes of the mesh; calls `visit` once per face whose nearest point is at most
-/// `radius` away, by ascending face number. May be asked by several threads at once.
+/// Laws: pure between two changes of the mesh; calls `visit` by ascending face number for each face that the
+/// particle stands over: whose plane is at most `radius` away and that the foot of the normal meets [thesis, 8.1];
+/// where there is none, for the nearest face within `radius`, if any, with the way from there as the normal.
+/// May be asked by several threads at once.
 template <class B>
 concept fluid_boundary = requires(B const& b, vec3 const& p, double radius, detail::contact_archetype const& visit) {
     { b.for_each_contact(p, radius, visit) } -> std::same_as<void>;

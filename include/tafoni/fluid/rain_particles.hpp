@@ -1,0 +1,142 @@
+/// \file
+/// Drops that fall, land and run off: the cheap fluid.
+#ifndef TAFONI_FLUID_RAIN_PARTICLES_HPP
+#define TAFONI_FLUID_RAIN_PARTICLES_HPP
+
+#include <tafoni/core/executor.hpp>
+#include <tafoni/core/random.hpp>
+#include <tafoni/core/vector.hpp>
+#include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/emitter.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace tafoni {
+
+struct rain_options {
+    std::uint32_t particles = 10000;   ///< drops under way, 1 .. 2^24
+    double radius = 1;                 ///< at which a drop touches the ground, length unit, > 0
+    vec3 gravity{0, 0, -9.81};         ///< length unit / s^2
+    double friction = 1;               ///< share of the velocity along the ground that is lost per second, 1/s, >= 0
+    double largest_step = 0.05;        ///< s, > 0
+    double lifetime = 30;              ///< s after which a drop has seeped away, > 0
+    std::uint64_t seed = 0;
+
+    /// \throws invalid_input  `bad_parameter`.
+    void validate() const {
+        detail::require_range("rain_options.particles", particles, 1, 1u << 24);
+        detail::require_range("rain_options.radius", radius, std::numeric_limits<double>::min(), 1e100);
+        for (int d = 0; d < 3; ++d) detail::require_range("rain_options.gravity", gravity[d], -1e100, 1e100);
+        detail::require_range("rain_options.friction", friction, 0, 1e6);
+        detail::require_range("rain_options.largest_step", largest_step, 1e-12, 1e12);
+        detail::require_range("rain_options.lifetime", lifetime, 1e-12, 1e12);
+    }
+};
+
+/// Drops without pressure: ballistic in the air, along the surface once they touch it, slowed by friction.
+///
+/// A drop that leaves the sink's box or outlives its time starts again in the emitter under a new id. Draws depend on
+/// (seed, id) only. Models `particle_fluid`.
+class rain_particles {
+public:
+    /// Drops start spread over the emitter, at times spread over their fall. O(particles).
+    /// \throws invalid_input  `bad_parameter`, `bad_box`.
+    rain_particles(box_emitter const& emitter, box_sink const& sink, rain_options const& options = {})
+        : emitter_((emitter.validate(), emitter)), sink_((sink.validate(), sink)), options_((options.validate(), options)) {
+        drops_.resize(options_.particles);
+        for (std::size_t i = 0; i < drops_.size(); ++i) drops_[i] = fresh(i);
+        next_id_ = drops_.size();
+    }
+
+    [[nodiscard]] std::size_t particle_count() const noexcept { return drops_.size(); }
+    [[nodiscard]] vec3 position(std::size_t i) const noexcept { return drops_[i].position; }
+    [[nodiscard]] vec3 velocity(std::size_t i) const noexcept { return drops_[i].velocity; }
+    [[nodiscard]] std::uint64_t id(std::size_t i) const noexcept { return drops_[i].id; }
+    [[nodiscard]] double reach() const noexcept { return options_.radius; }
+    [[nodiscard]] rain_options const& options() const noexcept { return options_; }
+
+    /// One step: no drop moves farther than half its radius along the way, nor longer than `largest_step`.
+    /// O(particles x faces near one).
+    template <fluid_boundary B, executor E>
+    double step(B const& walls, E const& threads) {
+        double const dt = time_step();
+        threads.for_blocks(drops_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) move(drops_[i], walls, dt);
+        });
+        for (drop& d : drops_) {
+            bool inside = d.age < options_.lifetime;
+            for (int a = 0; a < 3; ++a) {
+                inside = inside && d.position[a] >= sink_.keep.lo[a] && d.position[a] <= sink_.keep.hi[a];
+            }
+            if (!inside) d = fresh(next_id_++);
+        }
+        return dt;
+    }
+
+private:
+    struct drop {
+        vec3 position{0, 0, 0};
+        vec3 velocity{0, 0, 0};
+        double age = 0;
+        std::uint64_t id = 0;
+    };
+
+    [[nodiscard]] drop fresh(std::uint64_t id) const {
+        stream random(options_.seed, 0x7261696E, id);
+        drop d{.position = vec3{0, 0, 0}, .velocity = emitter_.velocity, .age = 0, .id = id};
+        for (int a = 0; a < 3; ++a) d.position[a] = random.uniform(emitter_.box.lo[a], emitter_.box.hi[a]);
+        return d;
+    }
+
+    [[nodiscard]] double time_step() const noexcept {
+        double fastest = 0;
+        for (drop const& d : drops_) fastest = std::max(fastest, squared_length(d.velocity));
+        double const g = length(options_.gravity);
+        double const far = 0.5 * options_.radius;
+        // far = v dt + g dt^2
+        double const v = std::sqrt(fastest);
+        double const dt = v + g > 0 ? 2 * far / (v + std::sqrt(v * v + 4 * g * far)) : options_.largest_step;
+        return std::min(dt, options_.largest_step);
+    }
+
+    template <fluid_boundary B>
+    void move(drop& d, B const& walls, double dt) const {
+        for (int a = 0; a < 3; ++a) d.velocity[a] += options_.gravity[a] * dt;
+        bool touches = false;
+        vec3 push{0, 0, 0};
+        walls.for_each_contact(d.position, options_.radius, [&](boundary_contact const& c) {
+            touches = true;
+            double const into = dot(d.velocity, c.normal);
+            if (into < 0) d.velocity = vec3{d.velocity[0] - into * c.normal[0], d.velocity[1] - into * c.normal[1],
+                                            d.velocity[2] - into * c.normal[2]};
+            double const deep = 0.5 * options_.radius - c.distance;  // rests at half its radius
+            if (deep > 0) push = vec3{push[0] + deep * c.normal[0], push[1] + deep * c.normal[1], push[2] + deep * c.normal[2]};
+        });
+        if (touches) {
+            double const slower = 1 / (1 + options_.friction * dt);
+            for (int a = 0; a < 3; ++a) d.velocity[a] *= slower;
+        }
+        double const far = length(push);
+        double const most = 0.5 * options_.radius;
+        double const share = far > most ? most / far : 1.0;
+        for (int a = 0; a < 3; ++a) d.position[a] += d.velocity[a] * dt + share * push[a];
+        d.age += dt;
+    }
+
+    box_emitter emitter_;
+    box_sink sink_;
+    rain_options options_;
+    std::vector<drop> drops_{};
+    std::uint64_t next_id_ = 0;
+};
+
+static_assert(particle_fluid<rain_particles>);
+
+}  // namespace tafoni
+
+#endif

@@ -1,0 +1,106 @@
+#include "support/curved_surfaces.hpp"
+
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/fluid/mesh_boundary.hpp>
+#include <tafoni/fluid/rain_particles.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <set>
+
+using namespace tafoni;
+using namespace tafoni_test;
+
+namespace {
+
+box3 between(vec3 const& lo, vec3 const& hi) {
+    box3 b;
+    b.lo = lo;
+    b.hi = hi;
+    return b;
+}
+triangle_surface floor_at(double slope) {
+    return parametric(
+               9, 9, false, false, 0,
+               [=](double u, double v) { return vec3{20 * u - 10, 20 * v - 10, -slope * (20 * u - 10)}; },
+               [](double, double) { return 0.0; })
+        .mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a drop in open space falls as the parabola says") {
+    rain_particles rain({.box = between(vec3{0, 0, 100}, vec3{0, 0, 100}), .velocity = vec3{3, 0, 0}},
+                        {.keep = between(vec3{-1e3, -1e3, -1e3}, vec3{1e3, 1e3, 1e3})},
+                        {.particles = 1, .radius = 0.01, .gravity = vec3{0, 0, -10}});
+    double t = 0;
+    for (int k = 0; k < 400; ++k) t += rain.step(open_space{}, inline_executor{});
+    CHECK(rain.position(0)[0] == Approx(3 * t));
+    CHECK(rain.velocity(0)[2] == Approx(-10 * t));
+    CHECK(rain.position(0)[2] == Approx(100 - 5 * t * t).epsilon(0.01));
+}
+
+TEST_CASE("drops land, do not pass through, and run downhill") {
+    triangle_surface const ground = floor_at(0.5);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.3);
+    rain_particles rain({.box = between(vec3{-8, -6, 5}, vec3{-5, 6, 7})}, {.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 9})},
+                        {.particles = 300, .radius = 0.3, .gravity = vec3{0, 0, -10}});
+    double moved = 0;
+    double lowest = 1e9;
+    std::set<std::uint64_t> ids;
+    for (int k = 0; k < 1200; ++k) {
+        rain.step(walls, inline_executor{});
+        for (std::size_t i = 0; i < rain.particle_count(); ++i) {
+            vec3 const p = rain.position(i);
+            lowest = std::min(lowest, p[2] + 0.5 * p[0]);
+            moved = std::max(moved, p[0]);
+            ids.insert(rain.id(i));
+        }
+    }
+    CHECK(lowest > 0);    // above the plane
+    CHECK(moved > 5);     // and down it
+    CHECK(ids.size() > 300);  // those that left came again as others
+}
+
+TEST_CASE("a drop that meets flat ground rests on it") {
+    triangle_surface const ground = floor_at(0);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.2);
+    rain_particles rain({.box = between(vec3{0.3, 0.2, 1}, vec3{0.3, 0.2, 1})}, {.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 9})},
+                        {.particles = 1, .radius = 0.2, .lifetime = 1e6});
+    for (int k = 0; k < 2000; ++k) rain.step(walls, inline_executor{});
+    CHECK(rain.position(0)[2] > 0.05);
+    CHECK(rain.position(0)[2] < 0.2);
+    CHECK(rain.position(0)[0] == Approx(0.3));
+}
+
+TEST_CASE("threads change no bit of the rain", "[threads]") {
+    triangle_surface const ground = floor_at(0.3);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.3);
+    auto const rained = [&](auto const& threads) {
+        rain_particles rain({.box = between(vec3{-8, -8, 4}, vec3{8, 8, 9})}, {.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 12})},
+                            {.particles = 5000, .radius = 0.3, .lifetime = 1});
+        for (int k = 0; k < 60; ++k) rain.step(walls, threads);
+        std::vector<vec3> all;
+        for (std::size_t i = 0; i < rain.particle_count(); ++i) all.push_back(rain.position(i));
+        return all;
+    };
+    auto const one = rained(inline_executor{});
+    for (std::size_t n : {2U, 7U}) CHECK(one == rained(thread_pool(n)));
+}
+
+TEST_CASE("rain out of range is refused by name") {
+    box3 const b = between(vec3{0, 0, 0}, vec3{1, 1, 1});
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    auto const refused = [&](rain_options const& o, char const* what) {
+        CHECK_THROWS_WITH(rain_particles({.box = b}, {.keep = b}, o), Catch::Contains(what));
+    };
+    refused({.particles = 0}, "particles");
+    for (double const bad : {0.0, -1.0, nan}) refused({.radius = bad}, "radius");
+    for (double const bad : {-1.0, nan}) refused({.friction = bad}, "friction");
+    for (double const bad : {0.0, nan}) refused({.largest_step = bad}, "largest_step");
+    for (double const bad : {0.0, nan}) refused({.lifetime = bad}, "lifetime");
+    refused({.gravity = vec3{0, nan, 0}}, "gravity");
+    CHECK_THROWS_AS(rain_particles({.box = between(vec3{1, 0, 0}, vec3{0, 1, 1})}, {.keep = b}), invalid_input);
+    CHECK_THROWS_AS(rain_particles({.box = b}, {.keep = between(vec3{0, 0, nan}, vec3{1, 1, 1})}), invalid_input);
+}
