@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -227,6 +226,33 @@ TEST_CASE("vertices lie on edges of the grid where the linear field takes the va
         vec3 const n = cross(m.positions[f[1]] - m.positions[f[0]], m.positions[f[2]] - m.positions[f[0]]);
         REQUIRE(dot(n, vec3{3, -0.5, 100}) < 0);  // towards lower values
     }
+}
+
+TEST_CASE("an open surface ends on the sides of the samples only", "[voxel][isosurface]") {
+    stream random(11, stage::user, 3);
+    std::array<std::size_t, 3> const size{8, 7, 6};
+    std::vector<double> samples;
+    for (std::size_t v = 0; v < size[0] * size[1] * size[2]; ++v) samples.push_back(random.uniform01() - 0.5);
+    auto const m = extract(samples, size, 0.0, isosurface_border::open);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+    for (std::size_t t = 0; t < m.face_count(); ++t) {
+        auto const f = m.face(t);
+        for (std::size_t k = 0; k < 3; ++k) ++sides[{f[k], f[(k + 1) % 3]}];
+    }
+    std::size_t ends = 0;
+    for (auto const& [side, times] : sides) {
+        REQUIRE(times == 1);
+        if (sides.contains({side.second, side.first})) continue;
+        ++ends;
+        bool on_side = false;
+        for (std::size_t d = 0; d < 3; ++d) {
+            auto const a = static_cast<Eigen::Index>(d);
+            double const p = m.positions[side.first][a];
+            on_side = on_side || (p == m.positions[side.second][a] && (p == 0 || p == static_cast<double>(size[d] - 1)));
+        }
+        REQUIRE(on_side);
+    }
+    REQUIRE(ends > 0);
 }
 
 TEST_CASE("the surface of samples does not depend on threads or on the samples' type", "[voxel][isosurface][threads]") {
