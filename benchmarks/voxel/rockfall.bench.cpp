@@ -29,8 +29,11 @@ sparse_grid column(std::int32_t n) {
             double const r = n * (v.z > n * 3 / 4 ? 0.4 : 0.3);
             double const inner = r - 2;
             if (x * x + y * y < inner * inner && v.z < n - 4) return voxel_state::rock;
-            stream rough(7, stage::user, static_cast<std::uint64_t>(v.x) + 4096 * (static_cast<std::uint64_t>(v.y) + 4096 * static_cast<std::uint64_t>(v.z)));
-            return x * x + y * y < r * r && v.z < n - 2 && rough.uniform01() > 0.2 ? voxel_state::rock : voxel_state::air;
+            stream rough(7, stage::user,
+                         static_cast<std::uint64_t>(v.x) +
+                             4096 * (static_cast<std::uint64_t>(v.y) + 4096 * static_cast<std::uint64_t>(v.z)));
+            return x * x + y * y < r * r && v.z < n - 2 && rough.uniform01() > 0.2 ? voxel_state::rock
+                                                                                   : voxel_state::air;
         });
         g.compact(b);
     }
@@ -47,7 +50,9 @@ std::vector<voxel> bite(sparse_grid const& g, stream& draw, std::size_t count) {
         v.y = static_cast<std::int32_t>(draw.index_below(n));
         v.z = static_cast<std::int32_t>(draw.index_below(n));
         auto const dir = static_cast<std::int32_t>(draw.index_below(2)) * 2 - 1;  // on, along x, to the next skin
-        while (g.contains(v) && !(g.is_rock(v) && (!g.is_rock(v + voxel{dir, 0, 0}) || !g.is_rock(v - voxel{dir, 0, 0})))) v.x += dir;
+        while (g.contains(v) &&
+               !(g.is_rock(v) && (!g.is_rock(v + voxel{dir, 0, 0}) || !g.is_rock(v - voxel{dir, 0, 0}))))
+            v.x += dir;
         if (g.contains(v)) out.push_back(v);
     }
     std::sort(out.begin(), out.end());
@@ -96,8 +101,11 @@ void followed(benchmark::State& state, double friction) {
         fallen += changes.size();
     }
     auto const after = fall.effort();
-    auto const per = [&](std::size_t a, std::size_t b) { return static_cast<double>(a - b) / static_cast<double>(removed); };
-    state.counters["per_removed"] = benchmark::Counter(static_cast<double>(removed), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    auto const per = [&](std::size_t a, std::size_t b) {
+        return static_cast<double>(a - b) / static_cast<double>(removed);
+    };
+    state.counters["per_removed"] =
+        benchmark::Counter(static_cast<double>(removed), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     state.counters["fallen"] = static_cast<double>(fallen) / static_cast<double>(removed);
     state.counters["open"] = per(after.voxels_searched, before.voxels_searched);
     state.counters["bricks"] = per(after.bricks_labelled, before.bricks_labelled);
@@ -120,7 +128,11 @@ void by_voxels(benchmark::State& state) {
     auto const n = static_cast<std::int32_t>(state.range(0));
     for (auto _ : state) {
         std::vector<bool> seen(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
-        auto const at = [&](voxel v) { return static_cast<std::size_t>(v.x) + static_cast<std::size_t>(n) * (static_cast<std::size_t>(v.y) + static_cast<std::size_t>(n) * static_cast<std::size_t>(v.z)); };
+        auto const at = [&](voxel v) {
+            return static_cast<std::size_t>(v.x) +
+                   static_cast<std::size_t>(n) *
+                       (static_cast<std::size_t>(v.y) + static_cast<std::size_t>(n) * static_cast<std::size_t>(v.z));
+        };
         std::vector<voxel> due;
         for (std::int32_t y = 0; y < n; ++y) {
             for (std::int32_t x = 0; x < n; ++x) {
@@ -132,7 +144,8 @@ void by_voxels(benchmark::State& state) {
         while (!due.empty()) {
             voxel const v = due.back();
             due.pop_back();
-            for (voxel const d : {voxel{1, 0, 0}, voxel{-1, 0, 0}, voxel{0, 1, 0}, voxel{0, -1, 0}, voxel{0, 0, 1}, voxel{0, 0, -1}}) {
+            for (voxel const d :
+                 {voxel{1, 0, 0}, voxel{-1, 0, 0}, voxel{0, 1, 0}, voxel{0, -1, 0}, voxel{0, 0, 1}, voxel{0, 0, -1}}) {
                 voxel const w = v + d;
                 if (!g.contains(w) || seen[at(w)] || !g.is_rock(w)) continue;
                 seen[at(w)] = true;
@@ -155,8 +168,24 @@ BENCHMARK_CAPTURE(followed, jointed, 30.0)
     ->ArgsProduct({{64, 128, 256, 512}, {2000}})
     ->Iterations(40)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(by_bricks, one, 1)->Name("voxel/rockfall/whole/bricks")->ArgName("n")->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(by_bricks, four, 4)->Name("voxel/rockfall/whole/bricks/threads:4")->ArgName("n")->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(by_voxels)->Name("voxel/rockfall/whole/voxels")->ArgName("n")->RangeMultiplier(2)->Range(64, 512)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(by_bricks, one, 1)
+    ->Name("voxel/rockfall/whole/bricks")
+    ->ArgName("n")
+    ->RangeMultiplier(2)
+    ->Range(64, 512)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(by_bricks, four, 4)
+    ->Name("voxel/rockfall/whole/bricks/threads:4")
+    ->ArgName("n")
+    ->RangeMultiplier(2)
+    ->Range(64, 512)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(by_voxels)
+    ->Name("voxel/rockfall/whole/voxels")
+    ->ArgName("n")
+    ->RangeMultiplier(2)
+    ->Range(64, 512)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

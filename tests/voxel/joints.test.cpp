@@ -64,7 +64,9 @@ TEST_CASE("joints cut the bonds that cross a disc, and no others", "[joints]") {
                             expected = expected || off <= 0;
                         }
                         if (in_doubt) continue;
-                        if (cuts.is_cut(g, v, axis) != expected) FAIL("bond " << x << ' ' << y << ' ' << z << " axis " << axis);
+                        if (cuts.is_cut(g, v, axis) != expected) {
+                            FAIL("bond " << x << ' ' << y << ' ' << z << " axis " << axis);
+                        }
                         cut += expected ? 1U : 0U;
                     }
                 }
@@ -130,9 +132,10 @@ TEST_CASE("joints are the same on any number of threads", "[joints][threads]") {
 TEST_CASE("joints with numbers that mean nothing are refused", "[joints]") {
     double const nan = std::numeric_limits<double>::quiet_NaN();
     double const infinite = std::numeric_limits<double>::infinity();
-    for (joint_disc const& bad : {joint_disc{.centre = {nan, 0, 0}}, joint_disc{.centre = {0, infinite, 0}},
-                                  joint_disc{.normal = {0, 0, 0}}, joint_disc{.normal = {0, nan, 1}},
-                                  joint_disc{.radius = -1}, joint_disc{.radius = nan}, joint_disc{.radius = infinite}}) {
+    for (joint_disc const& bad :
+         {joint_disc{.centre = {nan, 0, 0}}, joint_disc{.centre = {0, infinite, 0}}, joint_disc{.normal = {0, 0, 0}},
+          joint_disc{.normal = {0, nan, 1}}, joint_disc{.radius = -1}, joint_disc{.radius = nan},
+          joint_disc{.radius = infinite}}) {
         CHECK_THROWS_AS((joint_set{{joint_disc{}, bad}}.validate()), invalid_input);
     }
     CHECK_NOTHROW(joint_set{}.validate());

@@ -21,7 +21,8 @@ bool equal(joint_disc const& a, joint_disc const& b) {
 TEST_CASE("a line along a family's normal meets a joint every spacing", "[random_joints]") {
     vec3 const n = normalized(vec3{1, 2, 2});
     auto const box = box_of({0, 0, 0}, {20, 30, 25});
-    joint_set const joints = random_joints{{{.normal = n * 5.0, .spread = 0, .spacing = 0.25, .radius_min = 1, .radius_max = 4}}}(box, 3);
+    joint_set const joints =
+        random_joints{{{.normal = n * 5.0, .spread = 0, .spacing = 0.25, .radius_min = 1, .radius_max = 4}}}(box, 3);
     double way = 0;
     double met = 0;
     stream draw(1, stage::user, 0);
@@ -42,7 +43,8 @@ TEST_CASE("a line along a family's normal meets a joint every spacing", "[random
 
 TEST_CASE("joints keep to the spread, the radii and the box", "[random_joints]") {
     auto const box = box_of({-1, 5, 0}, {4, 9, 3});
-    joint_set const joints = random_joints{{{.normal = {0, 0, -2}, .spread = 12, .spacing = 0.1, .radius_min = 0.5, .radius_max = 1.5}}}(box, 9);
+    joint_set const joints = random_joints{
+        {{.normal = {0, 0, -2}, .spread = 12, .spacing = 0.1, .radius_min = 0.5, .radius_max = 1.5}}}(box, 9);
     REQUIRE(joints.discs.size() > 100);
     CHECK_NOTHROW(joints.validate());
     double widest = 0;
@@ -80,9 +82,10 @@ TEST_CASE("joints that nobody can strew are refused", "[random_joints]") {
     auto const box = box_of({0, 0, 0}, {5, 5, 5});
     double const nan = std::numeric_limits<double>::quiet_NaN();
     using family = random_joints::family;
-    for (family const& bad : {family{.normal = {0, 0, 0}}, family{.normal = {nan, 0, 0}}, family{.spread = -1}, family{.spread = 61},
-                              family{.spacing = 0}, family{.spacing = nan}, family{.radius_min = 0},
-                              family{.radius_min = 2, .radius_max = 1}, family{.spacing = 1e-9}}) {
+    for (family const& bad :
+         {family{.normal = {0, 0, 0}}, family{.normal = {nan, 0, 0}}, family{.spread = -1}, family{.spread = 61},
+          family{.spacing = 0}, family{.spacing = nan}, family{.radius_min = 0},
+          family{.radius_min = 2, .radius_max = 1}, family{.spacing = 1e-9}}) {
         CHECK_THROWS_AS((random_joints{{bad}}(box, 1)), invalid_input);
     }
     CHECK_THROWS_AS((random_joints{{{}}}(box3{}, 1)), invalid_input);

@@ -19,8 +19,8 @@ using namespace tafoni;
 
 constexpr grid_border on_the_ground{{border_kind::air, border_kind::air, border_kind::air, border_kind::air,
                                      border_kind::rock, border_kind::air}};
-rockfall_options const no_ground{.sides = {ground_side::loose, ground_side::loose, ground_side::loose, ground_side::loose,
-                                               ground_side::loose, ground_side::loose}};
+rockfall_options const no_ground{.sides = {ground_side::loose, ground_side::loose, ground_side::loose,
+                                           ground_side::loose, ground_side::loose, ground_side::loose}};
 
 void fill(sparse_grid& g, voxel lo, voxel hi, voxel_state s = voxel_state::rock) {
     for (auto z = lo.z; z <= hi.z; ++z) {
@@ -31,7 +31,8 @@ void fill(sparse_grid& g, voxel lo, voxel hi, voxel_state s = voxel_state::rock)
 }
 
 /// Removes rock and lets fall what comes loose.
-std::vector<fallen_block> remove(sparse_grid& g, rockfall& fall, std::vector<voxel> const& gone, std::uint64_t step = 1) {
+std::vector<fallen_block> remove(sparse_grid& g, rockfall& fall, std::vector<voxel> const& gone,
+                                 std::uint64_t step = 1) {
     for (voxel const v : gone) g.set(v, voxel_state::air);
     std::vector<voxel_change> changes;
     auto blocks = fall.fall(g, gone, step, inline_executor{}, changes);
@@ -93,11 +94,13 @@ private:
     static constexpr std::size_t none = ~std::size_t{0};
 
     std::size_t place(voxel v) const {
-        return static_cast<std::size_t>(v.x) + grid_.size()[0] * (static_cast<std::size_t>(v.y) + grid_.size()[1] * static_cast<std::size_t>(v.z));
+        return static_cast<std::size_t>(v.x) +
+               grid_.size()[0] * (static_cast<std::size_t>(v.y) + grid_.size()[1] * static_cast<std::size_t>(v.z));
     }
     std::size_t at(voxel v) const { return grid_.contains(v) ? index_[place(v)] : none; }
     bool cut(voxel a, voxel b) const {
-        return std::any_of(planes_.begin(), planes_.end(), [&](auto const& p) { return p.cuts(grid_.centre(a), grid_.centre(b)); });
+        return std::any_of(planes_.begin(), planes_.end(),
+                           [&](auto const& p) { return p.cuts(grid_.centre(a), grid_.centre(b)); });
     }
     bool is_ground(voxel v) const {
         voxel const u = grid_.to_user(v);
@@ -114,7 +117,8 @@ private:
             bool const is_up = t == v + voxel{0, 0, 1};
             if (!is_up && grid_.is_rock(t)) return true;
         }
-        return std::find(options_.ground_voxels.begin(), options_.ground_voxels.end(), u) != options_.ground_voxels.end() ||
+        return std::find(options_.ground_voxels.begin(), options_.ground_voxels.end(), u) !=
+                   options_.ground_voxels.end() ||
                (options_.ground_where && options_.ground_where(grid_.centre(v)));
     }
     std::vector<std::vector<voxel>> components() {
@@ -171,7 +175,9 @@ private:
                 for (auto const& plane : planes_) {
                     if (!plane.cuts(grid_.centre(w), grid_.centre(v))) continue;
                     vec3 turned{plane.normal[axis[0]], plane.normal[axis[1]], plane.normal[axis[2]]};
-                    for (int k = 0; k < 3; ++k) turned[k] *= grid_.rotation().mirrored[static_cast<std::size_t>(k)] ? -1.0 : 1.0;
+                    for (int k = 0; k < 3; ++k) {
+                        turned[k] *= grid_.rotation().mirrored[static_cast<std::size_t>(k)] ? -1.0 : 1.0;
+                    }
                     if (turned[2] < 0) turned = vec3{-turned[0], -turned[1], -turned[2]};
                     if (turned[2] < steep[2]) steep = turned;
                 }
@@ -180,7 +186,8 @@ private:
                 y += steep[1] / steep[2];
                 n += 1;
             }
-            flat[p] = n > 0 && std::atan2(std::sqrt(x * x + y * y), n) <= options_.friction_angle * 3.14159265358979 / 180 + 1e-9;
+            flat[p] = n > 0 && std::atan2(std::sqrt(x * x + y * y), n) <=
+                                   options_.friction_angle * 3.14159265358979 / 180 + 1e-9;
         }
         for (bool again = true; again;) {
             again = false;
@@ -203,8 +210,9 @@ private:
 };
 
 /// Random rock, taken away in random batches: every call must do what the rules say of the grid as it is.
-std::size_t compare_with_oracle(std::uint64_t seed, std::array<std::size_t, 3> size, std::size_t batch, std::size_t steps,
-                                rockfall_options options, double density, up_axis up = up_axis::plus_z) {
+std::size_t compare_with_oracle(std::uint64_t seed, std::array<std::size_t, 3> size, std::size_t batch,
+                                std::size_t steps, rockfall_options options, double density,
+                                up_axis up = up_axis::plus_z) {
     stream draw(seed, stage::user, 0);
     grid_border border;
     for (auto& s : border.sides) s = draw.index_below(3) == 0 ? border_kind::rock : border_kind::air;
@@ -250,15 +258,18 @@ std::size_t compare_with_oracle(std::uint64_t seed, std::array<std::size_t, 3> s
 }
 
 /// Rock in cubes of `cube` voxels, bitten by balls: bricks of nothing but rock, faces between bricks, large pieces.
-std::size_t compare_large(std::uint64_t seed, std::array<std::size_t, 3> size, std::int32_t cube, rockfall_options const& options,
-                          std::size_t steps) {
+std::size_t compare_large(std::uint64_t seed, std::array<std::size_t, 3> size, std::int32_t cube,
+                          rockfall_options const& options, std::size_t steps) {
     stream draw(seed, stage::user, 2);
     grid_border border = on_the_ground;
-    if (seed % 3 == 1) border.sides = {border_kind::extend, border_kind::air, border_kind::air, border_kind::rock, border_kind::air, border_kind::rock};
+    if (seed % 3 == 1)
+        border.sides = {border_kind::extend, border_kind::air, border_kind::air,
+                        border_kind::rock,   border_kind::air, border_kind::rock};
     sparse_grid g({.size = size, .spacing = {0.25, 0.25, 0.25}, .origin = {-3, 1, 0}}, up_axis::plus_z, border);
     for (std::size_t b = 0; b < g.brick_count(); ++b) {
         g.fill_brick(b, [&](voxel v) {
-            stream of_cube(seed, stage::user + 1, static_cast<std::uint64_t>(v.x / cube + 64 * (v.y / cube + 64 * (v.z / cube))));
+            stream of_cube(seed, stage::user + 1,
+                           static_cast<std::uint64_t>(v.x / cube + 64 * (v.y / cube + 64 * (v.z / cube))));
             return of_cube.chance(0.6) ? voxel_state::rock : voxel_state::air;
         });
     }
@@ -326,7 +337,8 @@ TEST_CASE("joints and friction decide as the rules say of the grid, batch after 
         rockfall_options options{.joints = random_cracks(seed, 1 + seed % 9, 3 + static_cast<double>(seed % 5) * 4),
                                  .friction_angle = static_cast<double>(seed % 4) * 20};
         auto const up = static_cast<up_axis>(seed % 6);
-        fallen += compare_with_oracle(seed, {10, 9, 11}, 1 + seed % 40, 8, options, 0.6 + 0.006 * static_cast<double>(seed), up);
+        fallen += compare_with_oracle(seed, {10, 9, 11}, 1 + seed % 40, 8, options,
+                                      0.6 + 0.006 * static_cast<double>(seed), up);
     }
     CHECK(fallen > 1000);
 }
@@ -334,9 +346,11 @@ TEST_CASE("joints and friction decide as the rules say of the grid, batch after 
 TEST_CASE("across bricks, solid or not, rock falls as a full relabel by voxels says", "[rockfall]") {
     std::size_t fallen = 0;
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
-        fallen += compare_large(seed, {70, 40, 65}, seed % 2 == 0 ? 8 : 32, seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
-        fallen += compare_large(seed, {70, 40, 65}, seed % 2 == 0 ? 32 : 16,
-                                {.joints = random_cracks(seed, 5, 20), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
+        fallen += compare_large(seed, {70, 40, 65}, seed % 2 == 0 ? 8 : 32,
+                                seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
+        fallen += compare_large(
+            seed, {70, 40, 65}, seed % 2 == 0 ? 32 : 16,
+            {.joints = random_cracks(seed, 5, 20), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
     }
     CHECK(fallen > 10000);
 }
@@ -344,16 +358,22 @@ TEST_CASE("across bricks, solid or not, rock falls as a full relabel by voxels s
 TEST_CASE("many more random rocks fall as a full relabel by voxels says", "[rockfall][slow]") {
     for (std::uint64_t seed = 1000; seed < 1350; ++seed) {
         double const density = 0.3 + 0.002 * static_cast<double>(seed - 1000);
-        compare_with_oracle(seed, {9, 7, 8}, 1 + seed % 23, 12, seed % 3 == 0 ? no_ground : rockfall_options{}, density);
+        compare_with_oracle(seed, {9, 7, 8}, 1 + seed % 23, 12, seed % 3 == 0 ? no_ground : rockfall_options{},
+                            density);
         compare_with_oracle(seed, {10, 9, 11}, 1 + seed % 23, 8,
                             {.joints = random_cracks(seed, 1 + seed % 12, 1 + static_cast<double>(seed % 5) * 4),
                              .friction_angle = static_cast<double>(seed % 4) * 20},
                             density, static_cast<up_axis>(seed % 6));
     }
     for (std::uint64_t seed = 100; seed < 110; ++seed) {
-        compare_large(seed, {100, 70, 66}, seed % 3 == 0 ? 8 : seed % 3 == 1 ? 16 : 32, seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
-        compare_large(seed, {70, 70, 66}, seed % 2 == 0 ? 32 : 8,
-                      {.joints = random_cracks(seed, 1 + seed % 9, 30), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
+        compare_large(seed, {100, 70, 66},
+                      seed % 3 == 0   ? 8
+                      : seed % 3 == 1 ? 16
+                                      : 32,
+                      seed % 4 == 3 ? no_ground : rockfall_options{}, 6);
+        compare_large(
+            seed, {70, 70, 66}, seed % 2 == 0 ? 32 : 8,
+            {.joints = random_cracks(seed, 1 + seed % 9, 30), .friction_angle = static_cast<double>(seed % 3) * 25}, 4);
     }
 }
 
@@ -424,7 +444,8 @@ TEST_CASE("edges, corners and colluvium hold no rock", "[rockfall]") {
 TEST_CASE("ground is where the options say", "[rockfall]") {
     auto const left = [](grid_border const& border, rockfall_options options) {
         sparse_grid g({.size = {9, 9, 9}}, up_axis::plus_z, border);
-        for (voxel const v : {voxel{0, 4, 4}, voxel{8, 4, 4}, voxel{4, 0, 4}, voxel{4, 8, 4}, voxel{4, 4, 0}, voxel{4, 4, 8}, voxel{4, 4, 4}}) {
+        for (voxel const v : {voxel{0, 4, 4}, voxel{8, 4, 4}, voxel{4, 0, 4}, voxel{4, 8, 4}, voxel{4, 4, 0},
+                              voxel{4, 4, 8}, voxel{4, 4, 4}}) {
             g.set(v, voxel_state::rock);
         }
         rockfall fall(std::move(options));
@@ -444,11 +465,13 @@ TEST_CASE("ground is where the options say", "[rockfall]") {
     grid_border two;
     two.sides[0] = border_kind::extend;
     two.sides[4] = border_kind::rock;
-    CHECK(left({}, {}) == std::vector<voxel>{{4, 4, 0}});  // none: the largest, of equal ones that with the lowest voxel
+    CHECK(left({}, {}) ==
+          std::vector<voxel>{{4, 4, 0}});  // none: the largest, of equal ones that with the lowest voxel
     CHECK(left(all_rock, {}).size() == 5);                 // not the top
     CHECK(left(two, {}) == std::vector<voxel>{{4, 4, 0}, {0, 4, 4}});
-    CHECK(left({}, {.sides = {ground_side::by_border, ground_side::by_border, ground_side::by_border, ground_side::by_border,
-                              ground_side::by_border, ground_side::ground}}) == std::vector<voxel>{{4, 4, 8}});
+    CHECK(left({}, {.sides = {ground_side::by_border, ground_side::by_border, ground_side::by_border,
+                              ground_side::by_border, ground_side::by_border, ground_side::ground}}) ==
+          std::vector<voxel>{{4, 4, 8}});
     CHECK(left(all_rock, no_ground) == std::vector<voxel>{{4, 4, 0}});
     CHECK(left({}, {.ground_voxels = {{4, 4, 4}, {5, 5, 5}, {-1, 0, 99}}}) == std::vector<voxel>{{4, 4, 4}});
     CHECK(left(two, {.ground_where = [](vec3 const& p) { return p[1] > 7; }}) ==
@@ -520,7 +543,9 @@ TEST_CASE("without rock, with one voxel and with nothing but rock", "[rockfall]"
             CHECK(remove(air, nothing, {}).empty());
             CHECK(remove(air, nothing, {}).empty());
             sparse_grid rock({.size = {d(n.x), d(n.y), d(n.z)}}, up_axis::plus_z, border);
-            for (std::size_t b = 0; b < rock.brick_count(); ++b) rock.fill_brick(b, [](voxel) { return voxel_state::rock; });
+            for (std::size_t b = 0; b < rock.brick_count(); ++b) {
+                rock.fill_brick(b, [](voxel) { return voxel_state::rock; });
+            }
             rockfall all;
             CHECK(remove(rock, all, {}).empty());
             CHECK(remove(rock, all, {{0, 0, 0}}).empty());
@@ -570,7 +595,8 @@ TEST_CASE("what it costs depends on what is removed and not on the size of the r
 TEST_CASE("rockfall falls the same on any number of threads", "[rockfall][threads]") {
     rockfall_options const options{.joints = random_cracks(5, 6, 20), .friction_angle = 20};
     auto const run = [&](auto const& threads) {
-        sparse_grid g({.size = {70, 40, 65}, .spacing = {0.25, 0.25, 0.25}, .origin = {-3, 1, 0}}, up_axis::plus_z, on_the_ground);
+        sparse_grid g({.size = {70, 40, 65}, .spacing = {0.25, 0.25, 0.25}, .origin = {-3, 1, 0}}, up_axis::plus_z,
+                      on_the_ground);
         for (std::size_t b = 0; b < g.brick_count(); ++b) {
             g.fill_brick(b, [&](voxel v) {
                 stream of_cube(5, stage::user, static_cast<std::uint64_t>(v.x / 8 + 64 * (v.y / 8 + 64 * (v.z / 8))));

@@ -52,11 +52,13 @@ struct random_joints {
 
     /// The joints that reach into a box, so many that a line along a family's mean normal meets one every
     /// `spacing` where the spread is small. Each family and disc draws from a stream of its own. O(discs).
-    /// \throws invalid_input  as `validate`; `empty_input` for an empty box, `size_overflow` for more than `most` discs.
+    /// \throws invalid_input  as `validate`; `empty_input` for an empty box, `size_overflow` for more than `most`
+    /// discs.
     [[nodiscard]] joint_set operator()(box3 const& box, std::uint64_t seed) const {
         validate();
         if (box.empty() || !is_finite(box.lo) || !is_finite(box.hi)) {
-            detail::fail<invalid_input>(errc::empty_input, "random_joints: got an empty box", {.kind = entity::parameter});
+            detail::fail<invalid_input>(errc::empty_input, "random_joints: got an empty box",
+                                        {.kind = entity::parameter});
         }
         joint_set out;
         for (std::size_t i = 0; i < families.size(); ++i) strew(families[i], i, box, seed, out.discs);
@@ -64,7 +66,8 @@ struct random_joints {
     }
 
 private:
-    static void strew(family const& f, std::size_t number, box3 const& box, std::uint64_t seed, std::vector<joint_disc>& out) {
+    static void strew(family const& f, std::size_t number, box3 const& box, std::uint64_t seed,
+                      std::vector<joint_disc>& out) {
         constexpr double pi = 3.141592653589793;
         // Centres lie around the box too: a joint that reaches in from there is as likely as one within.
         vec3 const reach{f.radius_max, f.radius_max, f.radius_max};
@@ -75,11 +78,11 @@ private:
         double const mean_area = pi * (a * a + a * b + b * b) / 3;
         double const count = std::floor(size[0] / f.spacing * (size[1] * (size[2] / mean_area)) + 0.5);
         if (!(count <= static_cast<double>(most - out.size()))) {
-            detail::fail<invalid_input>(errc::size_overflow,
-                                        "random_joints.families[" + std::to_string(number) + "]: got " +
-                                            detail::number_text(count) + " discs, at most " + std::to_string(most) + " in all",
-                                        {.kind = entity::parameter, .index = number, .value = count,
-                                         .limit = static_cast<double>(most)});
+            detail::fail<invalid_input>(
+                errc::size_overflow,
+                "random_joints.families[" + std::to_string(number) + "]: got " + detail::number_text(count) +
+                    " discs, at most " + std::to_string(most) + " in all",
+                {.kind = entity::parameter, .index = number, .value = count, .limit = static_cast<double>(most)});
         }
         vec3 const n = normalized(f.normal);
         vec3 const side = normalized(std::fabs(n[2]) < 0.6 ? cross(n, vec3{0, 0, 1}) : cross(n, vec3{1, 0, 0}));
@@ -98,7 +101,8 @@ private:
                 u = draw.uniform(-1, 1);
                 v = draw.uniform(-1, 1);
             } while (u * u + v * v > 1);
-            joint_disc disc{.centre = {lo[0] + size[0] * x, lo[1] + size[1] * y, lo[2] + size[2] * z}, .radius = radius};
+            joint_disc disc{.centre = {lo[0] + size[0] * x, lo[1] + size[1] * y, lo[2] + size[2] * z},
+                            .radius = radius};
             for (int k = 0; k < 3; ++k) disc.normal[k] = n[k] + lean * (u * side[k] + v * other[k]);
             if (touches(disc, box)) out.push_back(disc);
         }

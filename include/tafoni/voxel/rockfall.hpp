@@ -26,8 +26,8 @@
 
 namespace tafoni {
 
-/// Rock that does not hang on the ground by faces of rock falls, as whole pieces [Jones et al., sections 4 and 6; joints
-/// and friction after Ito et al. 2003].
+/// Rock that does not hang on the ground by faces of rock falls, as whole pieces [Jones et al., sections 4 and 6;
+/// joints and friction after Ito et al. 2003].
 ///
 /// Voxels hang together by their faces only, where no joint cuts the bond; edges and corners hold nothing, and
 /// colluvium neither carries nor connects rock. What stands and what falls follows from the grid alone:
@@ -64,10 +64,10 @@ public:
     /// Lets fall what stands no more: its voxels become air. Bricks that become empty are left to the caller to
     /// `compact`.
     ///
-    /// Each removed voxel costs a look at its 26 neighbours, some at the 8^3 voxels around them. Only where that leaves it
-    /// open whether rock came apart, bricks are searched: those between there and the ground, or those of the piece that falls, each labelled again
-    /// (10 to 40 us) if it changed since it was last searched. At worst, all bricks at the surface once per call. The
-    /// first call, and that which finds no ground any more, look at all.
+    /// Each removed voxel costs a look at its 26 neighbours, some at the 8^3 voxels around them. Only where that leaves
+    /// it open whether rock came apart, bricks are searched: those between there and the ground, or those of the piece
+    /// that falls, each labelled again (10 to 40 us) if it changed since it was last searched. At worst, all bricks at
+    /// the surface once per call. The first call, and that which finds no ground any more, look at all.
     /// \param removed  voxels that were rock after the last call and are not now; in any order. Not read in the
     ///                 first call.
     /// \param changes  gets rock -> air appended, each voxel once, in voxel order.
@@ -146,7 +146,8 @@ private:
                 if (search_->ground().contains(grid, v)) --ground_left_;
             }
             rock_left_ -= gone.size();
-            auto const& open = removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction(), ground_left_ != 0);
+            auto const& open =
+                removals_.witnesses(grid, search_->cuts(), search_->ground(), gone, friction(), ground_left_ != 0);
             crumble(grid, removals_.crumbs(), step, changes, out);
             search_->begin_epoch();
             if (had_ground && ground_left_ == 0) {
@@ -162,7 +163,8 @@ private:
         }
         std::sort(changes.begin() + static_cast<std::ptrdiff_t>(first), changes.end(),
                   [](voxel_change const& a, voxel_change const& b) { return a.at < b.at; });
-        std::sort(out.begin(), out.end(), [](fallen_block const& a, fallen_block const& b) { return a.voxels[0] < b.voxels[0]; });
+        std::sort(out.begin(), out.end(),
+                  [](fallen_block const& a, fallen_block const& b) { return a.voxels[0] < b.voxels[0]; });
         return out;
     }
 
@@ -174,7 +176,8 @@ private:
         for (std::size_t b = 0; b < grid.brick_count(); ++b) {
             std::size_t const n = search_->pieces(grid, b);
             for (std::size_t p = 0; p < n; ++p) {
-                std::uint32_t const g = search_->group_of(grid, {static_cast<std::uint32_t>(b), static_cast<std::uint16_t>(p)});
+                std::uint32_t const g =
+                    search_->group_of(grid, {static_cast<std::uint32_t>(b), static_cast<std::uint16_t>(p)});
                 groups.push_back(search_->settle(grid, g));
             }
         }
@@ -198,7 +201,8 @@ private:
             for (std::uint32_t& g : groups) g = search_->root(g);
             std::sort(groups.begin(), groups.end());
             groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
-            auto const growing = std::count_if(groups.begin(), groups.end(), [&](std::uint32_t g) { return search_->at(g).is == state::growing; });
+            auto const growing = std::count_if(groups.begin(), groups.end(),
+                                               [&](std::uint32_t g) { return search_->at(g).is == state::growing; });
             if (growing == 0 || (growing == 1 && groups.size() == 1)) return;
             if (growing == 1) break;
             for (std::uint32_t const g : groups) {
@@ -224,7 +228,8 @@ private:
         groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
         if (ground_left_ == 0) {
             if (groups.size() < 2) return {};
-            auto largest = std::find_if(groups.begin(), groups.end(), [&](std::uint32_t g) { return search_->at(g).is == state::growing; });
+            auto largest = std::find_if(groups.begin(), groups.end(),
+                                        [&](std::uint32_t g) { return search_->at(g).is == state::growing; });
             if (largest == groups.end()) largest = stays(grid, groups);
             groups.erase(largest);
             return groups;
@@ -262,8 +267,8 @@ private:
     }
 
     /// Whole pieces of few voxels.
-    void crumble(sparse_grid& grid, std::vector<voxel> const& crumbs, std::uint64_t step, std::vector<voxel_change>& changes,
-                 std::vector<fallen_block>& out) {
+    void crumble(sparse_grid& grid, std::vector<voxel> const& crumbs, std::uint64_t step,
+                 std::vector<voxel_change>& changes, std::vector<fallen_block>& out) {
         rock_left_ -= crumbs.size();
         for (voxel const v : crumbs) {
             grid.set(v, voxel_state::air);

@@ -92,8 +92,10 @@ private:
             bool beside = false;
             for (int k = 0; k < 3; ++k) {
                 double const n = plane.normal[k];
-                double const half = 1.000001 * joints.discs[i].radius * std::sqrt(std::max(0.0, 1 - n * n) + 1e-12) + spacing[k];
-                beside = beside || plane.centre[k] + half < std::min(a[k], b[k]) || plane.centre[k] - half > std::max(a[k], b[k]);
+                double const half =
+                    1.000001 * joints.discs[i].radius * std::sqrt(std::max(0.0, 1 - n * n) + 1e-12) + spacing[k];
+                beside = beside || plane.centre[k] + half < std::min(a[k], b[k]) ||
+                         plane.centre[k] - half > std::max(a[k], b[k]);
             }
             if (!beside && cut_by(grid, plane, low, out)) out.planes.push_back(static_cast<std::uint32_t>(i));
         }

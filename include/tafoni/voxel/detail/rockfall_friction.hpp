@@ -98,7 +98,8 @@ private:
 
     /// A face of a contact stands for 1 / n_up of its joint's area, so the sum of the normals by area is
     /// the sum of n / n_up.
-    bool is_flat(sparse_grid const& grid, rockfall_search const& search, std::map<std::uint32_t, std::uint64_t> const& faces) const {
+    bool is_flat(sparse_grid const& grid, rockfall_search const& search,
+                 std::map<std::uint32_t, std::uint64_t> const& faces) const {
         auto const& axis = grid.rotation().axis;
         double lean_x = 0;
         double lean_y = 0;

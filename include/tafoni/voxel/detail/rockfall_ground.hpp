@@ -66,7 +66,9 @@ public:
     [[nodiscard]] bool may_touch(sparse_grid const& grid, voxel v) const noexcept {
         std::array<std::int32_t, 3> const at{v.x, v.y, v.z};
         for (std::size_t d = 0; d < 3; ++d) {
-            if ((sides_[2 * d] && at[d] <= 1) || (sides_[2 * d + 1] && at[d] + 2 >= static_cast<std::int32_t>(grid.size()[d]))) return true;
+            if ((sides_[2 * d] && at[d] <= 1) ||
+                (sides_[2 * d + 1] && at[d] + 2 >= static_cast<std::int32_t>(grid.size()[d])))
+                return true;
         }
         if (table_.empty()) return false;
         for (int c = 0; c < 8; ++c) {
@@ -81,7 +83,8 @@ public:
         std::array<std::size_t, 3> const& n = grid.size();
         std::size_t const x = static_cast<std::size_t>(low.x) + (column & 31);
         std::size_t const y = static_cast<std::size_t>(low.y) + (column >> 5);
-        if ((sides_[0] && x == 0) || (sides_[1] && x + 1 == n[0]) || (sides_[2] && y == 0) || (sides_[3] && y + 1 == n[1])) {
+        if ((sides_[0] && x == 0) || (sides_[1] && x + 1 == n[0]) || (sides_[2] && y == 0) ||
+            (sides_[3] && y + 1 == n[1])) {
             return ~std::uint32_t{0};
         }
         std::uint32_t out = table_.empty() || table_[brick] == 0 ? 0 : bits_[table_[brick] - 1][column];
@@ -98,7 +101,8 @@ public:
         for (std::size_t b = 0; b < grid.brick_count(); ++b) {
             if (grid.is_air_brick(b) || !may_hold(grid, b)) continue;
             for (std::size_t c = 0; c < 1024; ++c) {
-                n += static_cast<std::size_t>(std::popcount(grid.plane_word(voxel_plane::rock, b, c) & word(grid, b, c)));
+                n += static_cast<std::size_t>(
+                    std::popcount(grid.plane_word(voxel_plane::rock, b, c) & word(grid, b, c)));
             }
         }
         return n;

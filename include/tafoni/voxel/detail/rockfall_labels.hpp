@@ -21,7 +21,9 @@ struct rock_run {
     std::uint8_t hi;
     std::uint16_t piece;
 
-    [[nodiscard]] std::uint32_t bits() const noexcept { return (~std::uint32_t{0} << lo) & (~std::uint32_t{0} >> (31 - hi)); }
+    [[nodiscard]] std::uint32_t bits() const noexcept {
+        return (~std::uint32_t{0} << lo) & (~std::uint32_t{0} >> (31 - hi));
+    }
 };
 
 /// Runs of bonded rock along z, joined across columns by union-find; about 7 KiB for a brick at the surface.
@@ -61,7 +63,8 @@ public:
         first_.resize(1025);
         for (std::size_t c = 0; c < 1024; ++c) {
             first_[c] = static_cast<std::uint16_t>(runs_.size());
-            std::uint32_t left = stored != nullptr ? stored->solid[c] & ~stored->colluvium[c] : grid.plane_word(voxel_plane::rock, brick, c);
+            std::uint32_t left = stored != nullptr ? stored->solid[c] & ~stored->colluvium[c]
+                                                   : grid.plane_word(voxel_plane::rock, brick, c);
             std::uint32_t const bonded = left & left >> 1 & (cut == nullptr ? ~std::uint32_t{0} : ~cut->axis[2][c]);
             while (left != 0) {
                 int const lo = std::countr_zero(left);

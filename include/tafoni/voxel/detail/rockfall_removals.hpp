@@ -1,5 +1,6 @@
 /// \file
-/// Which removed voxels may have parted a rock: a look at 27 voxels each, and at a block of 8^3 where that leaves it open.
+/// Which removed voxels may have parted a rock: a look at 27 voxels each, and at a block of 8^3 where that leaves it
+/// open.
 #ifndef TAFONI_VOXEL_DETAIL_ROCKFALL_REMOVALS_HPP
 #define TAFONI_VOXEL_DETAIL_ROCKFALL_REMOVALS_HPP
 
@@ -105,7 +106,9 @@ private:
     /// Three bits of a column around v, by word(brick, column).
     template <class Word>
     static std::uint32_t three(sparse_grid const& grid, voxel v, Word const& word) {
-        if (static_cast<std::size_t>(v.x) >= grid.size()[0] || static_cast<std::size_t>(v.y) >= grid.size()[1]) return 0;
+        if (static_cast<std::size_t>(v.x) >= grid.size()[0] || static_cast<std::size_t>(v.y) >= grid.size()[1]) {
+            return 0;
+        }
         std::size_t const b = grid.brick_of(v);
         std::size_t const c = sparse_grid::column_of(v);
         int const z = v.z & 31;
@@ -121,7 +124,9 @@ private:
         std::uint32_t out = 0;
         int at = 0;
         for (std::int32_t dy = -1; dy <= 1; ++dy) {
-            for (std::int32_t dx = -1; dx <= 1; ++dx, at += 3) out |= three(grid, {v.x + dx, v.y + dy, v.z}, word) << at;
+            for (std::int32_t dx = -1; dx <= 1; ++dx, at += 3) {
+                out |= three(grid, {v.x + dx, v.y + dy, v.z}, word) << at;
+            }
         }
         return out;
     }
@@ -155,7 +160,8 @@ private:
         return axis == 0 ? 077077077U : axis == 1 ? 0777777U : 0333333333U;
     }
 
-    void take_out(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v, bool contacts) {
+    void take_out(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v,
+                  bool contacts) {
         std::uint32_t const rock = rock_around(grid, v) & ~centre_bit;
         std::array<std::uint32_t, 3> open{with_next(0), with_next(1), with_next(2)};
         bool const cracked = !cuts.empty() && near_cut(grid, cuts, v, 1);
@@ -193,12 +199,14 @@ private:
     }
 
     /// The same by a block of 8^3.
-    void look_wider(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v, std::uint32_t bonded,
-                    bool footing, bool contacts) {
-        auto block = rockfall_block::around(grid, v, [&](std::size_t b, std::size_t c) { return rock_word(grid, b, c); });
+    void look_wider(sparse_grid const& grid, joint_cuts const& cuts, rockfall_ground const& ground, voxel v,
+                    std::uint32_t bonded, bool footing, bool contacts) {
+        auto block =
+            rockfall_block::around(grid, v, [&](std::size_t b, std::size_t c) { return rock_word(grid, b, c); });
         if (!cuts.empty() && near_cut(grid, cuts, v, 4)) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                block.cut[axis] = block.gather(grid, [&](std::size_t b, std::size_t c) { return cuts.word(axis, b, c); });
+                block.cut[axis] =
+                    block.gather(grid, [&](std::size_t b, std::size_t c) { return cuts.word(axis, b, c); });
             }
         }
         std::uint32_t going_on = 0;  // a cell of each part that leaves the block
@@ -210,7 +218,8 @@ private:
                 std::uint32_t const other = left & (0U - left);
                 if (block.has(part, neighbour(v, other))) bonded &= ~other;
             }
-            bool const goes_on = !has_ground_ || rockfall_block::reaches_out(part) || (contacts && block.at_contact(part));
+            bool const goes_on =
+                !has_ground_ || rockfall_block::reaches_out(part) || (contacts && block.at_contact(part));
             if (!goes_on) {
                 bool held = false;
                 block.for_voxels(part, [&](voxel w) { held = held || ground.contains(grid, w); });
@@ -233,7 +242,8 @@ private:
     }
 
     /// Whether the bonded neighbours, and the ground where the voxel was of it, hang together around the voxel.
-    static bool joined(std::uint32_t rock, std::array<std::uint32_t, 3> const& open, std::uint32_t bonded, std::uint32_t fixed) noexcept {
+    static bool joined(std::uint32_t rock, std::array<std::uint32_t, 3> const& open, std::uint32_t bonded,
+                       std::uint32_t fixed) noexcept {
         bool const was_ground = (fixed & centre_bit) != 0;
         if (bonded == 0) return true;
         if ((bonded & (bonded - 1)) == 0 && !was_ground) return true;
@@ -255,7 +265,9 @@ private:
                        std::min(v.y + by, static_cast<std::int32_t>(grid.size()[1]) - 1),
                        std::min(v.z + by, static_cast<std::int32_t>(grid.size()[2]) - 1)};
         for (int c = 0; c < 8; ++c) {
-            if (cuts.of(grid.brick_of({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z})) != nullptr) return true;
+            if (cuts.of(grid.brick_of({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z})) != nullptr) {
+                return true;
+            }
         }
         return false;
     }

@@ -151,7 +151,9 @@ public:
     template <class F>
     void for_voxels(sparse_grid const& grid, rock_node n, F const& f) {
         for (std::size_t c = 0; c < 1024; ++c) {
-            for (std::uint32_t left = bits(grid, n, c); left != 0; left &= left - 1) f(voxel_at(grid, n.brick, c, std::countr_zero(left)));
+            for (std::uint32_t left = bits(grid, n, c); left != 0; left &= left - 1) {
+                f(voxel_at(grid, n.brick, c, std::countr_zero(left)));
+            }
         }
     }
     /// Calls f(lowest voxel of a run) for every run of a piece that lies on rock across a cut bond.
@@ -164,7 +166,8 @@ public:
             if (mine == 0) continue;
             std::uint32_t cut_above = cuts_.word(2, n.brick, c) & grid.plane_word(voxel_plane::rock, n.brick, c);
             std::uint32_t resting = mine & cut_above << 1;
-            if (under != nowhere && (cuts_.word(2, under, c) & grid.plane_word(voxel_plane::rock, under, c)) >> 31 != 0) {
+            if (under != nowhere &&
+                (cuts_.word(2, under, c) & grid.plane_word(voxel_plane::rock, under, c)) >> 31 != 0) {
                 resting |= mine & 1U;
             }
             for (; resting != 0; resting &= resting - 1) f(voxel_at(grid, n.brick, c, std::countr_zero(resting)));
@@ -180,7 +183,8 @@ private:
     };
 
     static voxel voxel_at(sparse_grid const& grid, std::size_t brick, std::size_t c, int z) noexcept {
-        return grid.brick_corner(brick) + voxel{static_cast<std::int32_t>(c & 31), static_cast<std::int32_t>(c >> 5), z};
+        return grid.brick_corner(brick) +
+               voxel{static_cast<std::int32_t>(c & 31), static_cast<std::int32_t>(c >> 5), z};
     }
     /// All of it one piece, for certain.
     [[nodiscard]] bool is_uniform(sparse_grid const& grid, std::size_t b) const noexcept {
@@ -233,10 +237,14 @@ private:
             std::array<std::size_t, 3> edges{};
             voxel const low = grid.brick_corner(n.brick);
             std::array<std::int32_t, 3> const at{low.x, low.y, low.z};
-            for (std::size_t d = 0; d < 3; ++d) edges[d] = std::min<std::size_t>(32, grid.size()[d] - static_cast<std::size_t>(at[d]));
+            for (std::size_t d = 0; d < 3; ++d) {
+                edges[d] = std::min<std::size_t>(32, grid.size()[d] - static_cast<std::size_t>(at[d]));
+            }
             into.voxels += edges[0] * edges[1] * edges[2];
             if (ground_.may_hold(grid, n.brick)) {
-                for (std::size_t c = 0; c < 1024 && !held; ++c) held = (ground_.word(grid, n.brick, c) & grid.inside_word(n.brick, c)) != 0;
+                for (std::size_t c = 0; c < 1024 && !held; ++c) {
+                    held = (ground_.word(grid, n.brick, c) & grid.inside_word(n.brick, c)) != 0;
+                }
             }
         } else {
             auto& p = fresh(grid, n.brick).pieces[n.piece];
@@ -253,7 +261,9 @@ private:
             std::size_t const there = beyond(grid, n.brick, face);
             if (there == nowhere || grid.is_air_brick(there)) continue;
             // Solid bricks cost least to cross, bricks without fresh labels most.
-            std::uint64_t const dear = is_uniform(grid, there) ? 0 : slot_[there] != 0 && labels_[slot_[there] - 1].valid ? 1 : 2;
+            std::uint64_t const dear = is_uniform(grid, there)                                ? 0
+                                       : slot_[there] != 0 && labels_[slot_[there] - 1].valid ? 1
+                                                                                              : 2;
             into.ahead.push_back({dear << 32 | ground_.distance(grid, there), n, face});
             std::push_heap(into.ahead.begin(), into.ahead.end(), std::greater<>{});
         }
@@ -290,7 +300,9 @@ private:
         if (!solid_there) fresh(grid, there);
         rock_labels const* const mine = solid ? nullptr : &labels_[slot_[from.brick] - 1];
         rock_labels const* const theirs = solid_there ? nullptr : &labels_[slot_[there] - 1];
-        auto const own = [&](std::size_t c) { return solid ? grid.inside_word(from.brick, c) : mine->bits(c, from.piece); };
+        auto const own = [&](std::size_t c) {
+            return solid ? grid.inside_word(from.brick, c) : mine->bits(c, from.piece);
+        };
         auto const reach = [&](std::size_t c, std::uint32_t bonds) {
             if (bonds == 0) return;
             if (solid_there) return f(0);
