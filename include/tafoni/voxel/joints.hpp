@@ -13,7 +13,7 @@
 
 namespace tafoni {
 
-/// A flat, round crack in the user's space [Ito et al. 2003 model the joints of a rock so].
+/// A flat, round crack in the user's space [joints in rock after Ito et al. 2003].
 struct joint_disc {
     vec3 centre{0, 0, 0};  ///< length unit
     vec3 normal{0, 0, 1};  ///< either of the two, of any length > 0

@@ -22,7 +22,7 @@ namespace stage {
 inline constexpr std::uint32_t joints = 9;
 }  // namespace stage
 
-/// Discs of several orientations, strewn evenly [joint sets of Ito et al. 2003; discs as Baecher et al. 1977].
+/// Discs of several orientations, strewn evenly [joints after Ito et al. 2003, as discs after Baecher et al. 1977].
 struct random_joints {
     /// Joints that the same stress has opened.
     struct family {
