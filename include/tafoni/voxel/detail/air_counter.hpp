@@ -123,7 +123,7 @@ public:
             telling += 800 + 2 * n + 4 * changes * words.mirrored().size();
             counting += records * (8 + word_cost(words));
             if (!std::exchange(gathered[static_cast<std::size_t>(words.kind())], true)) {
-                counting += words.kind() == stencil_words::layout::wide ? std::size_t{300000} : 7000;
+                counting += words.kind() == stencil_words::layout::wide ? std::size_t{240000} : 7000;
             }
         }
         return counting < telling;

@@ -7,6 +7,7 @@
 #include <tafoni/voxel/detail/skin_view.hpp>
 #include <tafoni/voxel/detail/stencil_words.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -71,45 +72,63 @@ private:
         }
     }
 
+    using wide_row = std::array<std::uint64_t, 2>;
+
     void gather_wide(sparse_grid const& grid, std::size_t brick, int margin) {
         wide_.resize(2 * wide_plane + 8);
         voxel const low = grid.brick_corner(brick);
-        auto const& n = grid.size();
-        auto const& bricks = grid.bricks();
         for (int y = -margin; y < 32 + margin; ++y) {
             for (int x = -margin; x < 32 + margin; ++x) {
-                std::array<std::uint64_t, 2> row{};
-                bool const beside =
-                    static_cast<std::size_t>(low.x + x) >= n[0] || static_cast<std::size_t>(low.y + y) >= n[1];
-                for (int dz = -2; dz <= 2; ++dz) {
-                    if (beside || (low.z >> 5) + dz < 0 || (low.z >> 5) + dz >= bricks[2]) continue;
-                    voxel const v{low.x + x, low.y + y, low.z + 32 * dz};
-                    std::uint64_t const word = grid.solid_word(grid.brick_of(v), sparse_grid::column_of(v));
-                    int const bit = 48 + 32 * dz;
-                    if (bit < 64) row[0] |= bit < 0 ? word >> -bit : word << bit;
-                    if (bit >= 48) row[1] |= bit < 64 ? word >> (64 - bit) : word << (bit - 64);
-                }
-                patch_wide(grid, low, x, y, beside, row);
+                wide_row const row = bits_of_column(grid, {low.x + x, low.y + y, low.z});
                 std::ptrdiff_t const at = (x + 48) + 128 * (y + 48);
                 wide_[static_cast<std::size_t>(at)] = row[0];
                 wide_[static_cast<std::size_t>(at + wide_plane)] = row[1];
             }
         }
     }
-    /// What lies beyond the grid, as the border says.
-    static void patch_wide(sparse_grid const& grid, voxel low, int x, int y, bool beside,
-                           std::array<std::uint64_t, 2>& row) {
+
+    /// From 48 below `low` up, beyond the grid as the border says.
+    static wide_row bits_of_column(sparse_grid const& grid, voxel low) noexcept {
+        voxel nearest{low.x, low.y, low.z};
+        bool const beside = !grid.contains(nearest);
+        border_kind const aside = beside ? grid.step_inside(nearest) : border_kind::extend;
+        wide_row const solid = aside == border_kind::extend ? bits_inside(grid, nearest) : wide_row{};
         auto const height = static_cast<std::int32_t>(grid.size()[2]);
-        for (int z = -48; z < 80; ++z) {
-            bool const within = low.z + z >= 0 && low.z + z < height;
-            if (within && !beside) {
-                z = height - low.z < 80 ? height - low.z - 1 : 79;
-                continue;
-            }
-            if (!grid.is_solid({low.x + x, low.y + y, low.z + z})) continue;
-            auto const k = static_cast<unsigned>(z + 48);
-            row[k / 64] |= std::uint64_t{1} << (k % 64);
+        int const first = std::max(0, 48 - low.z);           // bits from here ...
+        int const end = std::min(128, height - low.z + 48);  // ... to here are within the height of the grid
+        wide_row out = aside == border_kind::rock ? ones(first, end) : solid;
+        auto const beyond = [&](border_kind side, int from, int to, int outermost) {
+            if (from >= to) return;
+            bool const rock = side == border_kind::rock || aside == border_kind::rock;
+            bool const extended = side == border_kind::extend && aside == border_kind::extend;
+            auto const k = static_cast<unsigned>(outermost);
+            if (!rock && !(extended && (solid[k / 64] >> (k % 64) & 1) != 0)) return;
+            wide_row const more = ones(from, to);
+            out[0] |= more[0];
+            out[1] |= more[1];
+        };
+        beyond(grid.border().sides[4], 0, first, first);
+        beyond(grid.border().sides[5], end, 128, end - 1);
+        return out;
+    }
+    /// Of a column inside the grid.
+    static wide_row bits_inside(sparse_grid const& grid, voxel low) noexcept {
+        wide_row row{};
+        std::size_t const column = sparse_grid::column_of(low);
+        auto const& bricks = grid.bricks();
+        for (int dz = -2; dz <= 2; ++dz) {
+            if ((low.z >> 5) + dz < 0 || (low.z >> 5) + dz >= bricks[2]) continue;
+            std::uint64_t const word = grid.solid_word(grid.brick_of({low.x, low.y, low.z + 32 * dz}), column);
+            int const bit = 48 + 32 * dz;
+            if (bit < 64) row[0] |= bit < 0 ? word >> -bit : word << bit;
+            if (bit >= 48) row[1] |= bit < 64 ? word >> (64 - bit) : word << (bit - 64);
         }
+        return row;
+    }
+    /// Bits from .. to - 1 of 128.
+    static wide_row ones(int from, int to) noexcept {
+        auto const below = [](int n) { return n <= 0 ? 0 : n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1; };
+        return {below(to) & ~below(from), below(to - 64) & ~below(from - 64)};
     }
 
     brick_window window_{};
