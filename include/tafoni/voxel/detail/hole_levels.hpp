@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -56,14 +57,17 @@ public:
         }
         offsets_.resize(places_.size());
         lengths_.resize(places_.size());
+        seen_.resize(places_.size(), 0);
+        active_[0].resize(caps_.size());
+        std::iota(active_[0].begin(), active_[0].end(), 0U);
     }
 
     [[nodiscard]] bool is_uniform(voxel low) {
         if (caps_.empty()) return true;
         low_ = low;
-        if (decided(low, 32)) return true;
+        if (decided(low, 32, 0)) return true;
         levels_.resize(32768);
-        split(low, 32);
+        split(low, 32, 1);
         return false;
     }
     [[nodiscard]] int uniform() const noexcept { return level_; }
@@ -100,9 +104,14 @@ private:
     }
     [[nodiscard]] static int level_of(double share) noexcept { return static_cast<int>(std::ceil(share + (0.5 - tie))); }
 
-    void split(voxel low, std::int32_t edge) {
+    /// `depth`: halvings that led here and one; the caps that count are `active_[depth]`.
+    void split(voxel low, std::int32_t edge, std::size_t depth) {
         if (edge == 1) {
-            set(low, 1, level_of(share(centre_of(in_rows(low)))));
+            vec3 const p = centre_of(in_rows(low));
+            double const here = share(p, active_[depth]);
+            int level = level_of(here - blur_[depth]);
+            if (level != level_of(here + blur_[depth])) level = level_of(share(p, active_[0]));
+            set(low, 1, level);
             return;
         }
         std::int32_t const half = edge / 2;
@@ -112,10 +121,12 @@ private:
                 static_cast<std::size_t>(at.z) >= size_[2]) {
                 continue;
             }
-            if (half > 1 && decided(at, half)) {
+            if (half == 1) {
+                split(at, half, depth);
+            } else if (decided(at, half, depth)) {
                 set(at, half, level_);
             } else {
-                split(at, half);
+                split(at, half, depth + 1);
             }
         }
     }
@@ -129,8 +140,10 @@ private:
         }
     }
 
-    /// Whether one level holds for all voxels of a block; `level_` is it then. O(edges of holes).
-    bool decided(voxel low, std::int32_t edge) {
+    /// Whether one level holds for all voxels of a block; `level_` is it then. Else `active_[depth + 1]` holds
+    /// those of `active_[depth]` that matter inside, and `blur_[depth + 1]` what all others can add at most: a
+    /// cap is seen as no more than its area over the squared distance. O(active caps).
+    bool decided(voxel low, std::int32_t edge, std::size_t depth) {
         voxel const high{std::min(low.x + edge, static_cast<std::int32_t>(size_[0])) - 1,
                          std::min(low.y + edge, static_cast<std::int32_t>(size_[1])) - 1,
                          std::min(low.z + edge, static_cast<std::int32_t>(size_[2])) - 1};
@@ -138,18 +151,34 @@ private:
         vec3 const b = centre_of(in_rows(high));
         vec3 const centre = vec3(0.5 * (a + b));
         double const radius = 0.5 * length(b - a) + 0x1p-20;
-        double slope = 0;
-        for (std::size_t t = 0; t < caps_.size(); ++t) {
+        double const negligible = 0.05 / static_cast<double>(caps_.size());
+        std::vector<std::uint32_t>& kept = active_[depth + 1];
+        kept.clear();
+        double blur = blur_[depth];
+        double slope = far_slope_[depth];
+        double far_slope = slope;
+        bool smooth = true;
+        for (std::uint32_t const t : active_[depth]) {
             shape const& s = shapes_[t];
-            if (reaches(centre, radius, t)) return false;
+            double const off = length(centre - s.centre) - radius - s.radius;
+            if (off > 0 && s.double_area < 8 * pi * negligible * off * off) {
+                blur += s.double_area / (8 * pi * off * off);
+                far_slope += s.edge / (off * off);
+                slope += s.edge / (off * off);
+                continue;
+            }
+            kept.push_back(t);
+            if (!smooth) continue;
             double const distance = segment_distance(centre, places_[caps_[t][1]], places_[caps_[t][2]]) - radius;
-            if (!(distance > 0)) return false;
-            slope += s.edge / (distance * distance);
-            // Below half a turn on either side, or no level can hold.
-            if (slope * radius > 2 * pi) return false;
+            if (distance > 0) slope += s.edge / (distance * distance);
+            // Beyond half a sphere on either side no level can hold.
+            smooth = distance > 0 && slope * radius <= 2 * pi && !reaches(centre, radius, t);
         }
-        double const change = slope * radius / (4 * pi) * 1.001 + 0x1p-36;
-        double const here = share(centre);
+        blur_[depth + 1] = blur;
+        far_slope_[depth + 1] = far_slope;
+        if (!smooth) return false;
+        double const change = slope * radius / (4 * pi) * 1.001 + blur * 1.001 + 0x1p-36;
+        double const here = share(centre, kept);
         level_ = level_of(here - change);
         return level_ == level_of(here + change);
     }
@@ -175,15 +204,18 @@ private:
         return length(p - a - t * along);
     }
 
-    /// Solid angle of all caps over that of the sphere, positive from behind them. O(edges of holes).
-    double share(vec3 const& p) {
-        for (std::size_t v = 0; v < places_.size(); ++v) {
-            offsets_[v] = places_[v] - p;
-            lengths_[v] = length(offsets_[v]);
-        }
+    /// Solid angle of caps over that of the sphere, positive from behind them. O(caps).
+    double share(vec3 const& p, std::vector<std::uint32_t> const& which) {
+        ++round_;
         double halves = 0;
-        for (std::size_t t = 0; t < caps_.size(); ++t) {
+        for (std::uint32_t const t : which) {
             auto const [i, j, k] = caps_[t];
+            for (std::uint32_t const v : caps_[t]) {
+                if (seen_[v] == round_) continue;
+                seen_[v] = round_;
+                offsets_[v] = places_[v] - p;
+                lengths_[v] = length(offsets_[v]);
+            }
             vec3 const& a = offsets_[i];
             vec3 const& b = offsets_[j];
             vec3 const& c = offsets_[k];
@@ -212,6 +244,11 @@ private:
     std::vector<shape> shapes_{};
     std::vector<vec3> offsets_{};
     std::vector<double> lengths_{};
+    std::vector<std::uint64_t> seen_{};  ///< the evaluation that offset and length of a corner belong to
+    std::uint64_t round_ = 0;
+    std::array<std::vector<std::uint32_t>, 8> active_{};
+    std::array<double, 8> blur_{};
+    std::array<double, 8> far_slope_{};  ///< what edges of caps that do not count add to the gradient, at most
     voxel low_{};
     int level_ = 1;
     std::vector<int> levels_{};
