@@ -1,5 +1,5 @@
-# Voxels: a hoodoo under its durability profile, from cube to sphere, an inside corner to a cavern (as Figures 7, 15,
-# 9 and 10 of the paper). Sourced by examples/run.sh.
+# Voxels: a hoodoo under its durability profile (as Figures 7 and 15 of the paper), tafoni in a cliff, from cube to
+# sphere (Figure 9), an inside corner to a cavern (Figure 10). Sourced by examples/run.sh.
 # shellcheck shell=sh disable=SC2154
 
 results=$out/voxel
@@ -63,8 +63,15 @@ scene hoodoo $((3 * age)) $age "0.5 -1 0.22" tint -1,1 "$bed_map" builtin:hoodoo
 row=""
 box=$(box_of hoodoo 0 $age $((2 * age)) $((3 * age)))
 for state in 0 $age $((2 * age)) $((3 * age)); do add hoodoo $state "$state steps"; done
+
+deep=$((60 / part))
+scene cliff $deep $deep "0.3 -1 0.2" tint -1,1 "$bed_map" builtin:cliff --resolution $((224 / part)) --rockfall \
+    --radius $((7 / part)) --measure excess --schedule 3c,1s --durability layers:values=0.03,0.004,0.02,0.006,thickness=0.13 \
+    --noise noise:amplitude=0.004,wavelength=0.1
+box=$(box_of cliff $deep)
+add cliff $deep "tafoni in a cliff"
 # shellcheck disable=SC2086
-convert $row +append "$results/hoodoo.png"
+convert $row -background white -gravity south +append "$results/hoodoo.png"
 
 round=$((75 / part))
 scene cube $((2 * round)) $round "0.5 -1 0.45" curvature -0.7,0.7 "$bend_map" builtin:cube --border open \

@@ -19,7 +19,7 @@ void add_rock_options(CLI::App& c, voxel_arguments& a) {
     c.add_option("--up", a.up, "axis that points up: x, y, z, -x, -y or -z")->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))->capture_default_str();
     c.add_option("--image", a.image, "SPEC: how an image becomes rock")->capture_default_str();
     c.add_option("--level", a.level, "samples of a .nrrd from which on there is rock; default: halfway between least and largest")->check(between(-1e300, 1e300));
-    c.add_option("--border", a.border, "ground, open or extend; default: extend for .asc, else ground")->check(CLI::IsMember({"ground", "open", "extend"}));
+    c.add_option("--border", a.border, "ground, open or extend; default: extend for .asc and builtin:cliff, else ground")->check(CLI::IsMember({"ground", "open", "extend"}));
 }
 
 void add_process_options(CLI::App& c, voxel_arguments& a) {

@@ -241,7 +241,7 @@ voxel_source load_voxels(voxel_arguments const& a) {
     source.up_direction = up_rotation::of(source.up).direction_to_user({0, 0, 1});
     source.repaired = {{"turned_faces", 0}};
     std::string const kind = extension_of(a.input);
-    source.border = !a.border.empty() ? a.border : kind == "asc" ? "extend" : "ground";
+    source.border = !a.border.empty() ? a.border : kind == "asc" || a.input.rfind("builtin:cliff", 0) == 0 ? "extend" : "ground";
     if (a.input.rfind("builtin:", 0) == 0 && a.input.rfind("builtin:outcrop", 0) != 0) {
         load_builtin(source, a);
     } else if (kind == "asc") {
