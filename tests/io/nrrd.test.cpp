@@ -62,12 +62,14 @@ TEST_CASE("without places voxels are unit cubes from the origin; with them the f
     REQUIRE(plain.frame.size == std::array<std::size_t, 3>{2, 1, 2});
     REQUIRE(plain.frame.spacing == vec3{1, 1, 1});
     REQUIRE(plain.frame.origin == vec3{0, 0, 0});
+    REQUIRE_FALSE(plain.placed);
     REQUIRE(plain.at(1, 0, 0) == 'b');
     REQUIRE(plain.at(0, 0, 1) == 'c');
 
     sample_volume const spaced = read_nrrd(header("uchar", "spacings: 0.5 2 4\nspace origin: (1,2,3)\n") + "abcd", "x");
     REQUIRE(spaced.frame.spacing == vec3{0.5, 2, 4});
     REQUIRE(spaced.frame.centre({0, 0, 0}) == vec3{1, 2, 3});
+    REQUIRE(spaced.placed);
 
     // An axis that runs backwards is turned round: the first sample stays where it is.
     sample_volume const turned = read_nrrd(header("uchar", "space: left-posterior-superior\nspace directions: (-0.5,0,0) (0, 2 ,0) (0,0,4)\nspace origin: (1,2,3)\n") + "abcd", "x");

@@ -206,7 +206,8 @@ private:
                 spacing(directions, d, std::fabs(s[4 * d]));
             }
         }
-        if (!has(origin)) return;
+        out_.placed = has(origin);
+        if (!out_.placed) return;
         // The origin of the file is the place of its first sample, ours the lower corner of the lowest voxel.
         std::vector<double> const o = numbers(field_[origin], 3);
         for (std::size_t d = 0; d < 3; ++d) {

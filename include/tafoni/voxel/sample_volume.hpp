@@ -16,6 +16,7 @@ namespace tafoni {
 struct sample_volume {
     grid_frame frame{};
     std::vector<float> samples{};  ///< x runs fastest, then y, then z
+    bool placed = false;           ///< whether its source said where it lies, not only how large it is
 
     [[nodiscard]] float at(std::size_t i, std::size_t j, std::size_t k) const noexcept {
         return samples[i + frame.size[0] * (j + frame.size[1] * k)];
