@@ -51,17 +51,26 @@ public:
                  skin_view const& skin) {
         if (skin.position.empty()) return;
         if (skin.bubble.empty() || bubbles.size() == 1) {
-            prepare(grid, brick, bubbles[0]);
+            rows_.gather(grid, brick, bubbles[0].reach(), bubbles[0].words().kind());
             return count(bubbles[0], skin.position, skin.air.data());
         }
         group(bubbles.size(), skin);
-        prepared_ = none;
-        for (std::size_t b = 0; b < bubbles.size(); ++b) {
-            std::size_t const first = first_[b];
-            std::size_t const n = first_[b + 1] - first;
-            if (n == 0) continue;
-            prepare_for_all(grid, brick, bubbles, b);
-            count(bubbles[b], std::span(grouped_).subspan(first, n), counts_.data() + first);
+        using layout = stencil_words::layout;
+        for (layout const kind : {layout::narrow, layout::medium, layout::wide}) {
+            int reach = -1;
+            for (std::size_t b = 0; b < bubbles.size(); ++b) {
+                if (bubbles[b].words().kind() == kind && first_[b] < first_[b + 1]) {
+                    reach = std::max(reach, bubbles[b].reach());
+                }
+            }
+            if (reach < 0) continue;
+            rows_.gather(grid, brick, reach, kind);
+            for (std::size_t b = 0; b < bubbles.size(); ++b) {
+                std::size_t const first = first_[b];
+                std::size_t const n = first_[b + 1] - first;
+                if (n == 0 || bubbles[b].words().kind() != kind) continue;
+                count(bubbles[b], std::span(grouped_).subspan(first, n), counts_.data() + first);
+            }
         }
         for (std::size_t k = 0; k < skin.position.size(); ++k) skin.air[order_[k]] = counts_[k];
     }
@@ -130,29 +139,12 @@ public:
     }
 
 private:
-    static constexpr int none = -1;
-
     /// Of all words of a bubble, once.
     [[nodiscard]] std::size_t word_cost(stencil_words const& words) const noexcept {
         if (kernels_ == kernel_set::avx512) return 3 * words.blocks().size() / 2;
-        if (kernels_ == kernel_set::avx2 && words.kind() != stencil_words::layout::wide) return 4 * words.blocks().size();
+        bool const wide = words.kind() == stencil_words::layout::wide;
+        if (kernels_ == kernel_set::avx2 && !wide) return 4 * words.blocks().size();
         return kernels_ == kernel_set::portable ? 4 * words.words().size() : words.words().size();
-    }
-
-    void prepare(sparse_grid const& grid, std::size_t brick, bubble_stencil const& b) {
-        rows_.gather(grid, brick, b.reach(), b.words().kind());
-    }
-    /// Bubbles of one layout share what is gathered.
-    void prepare_for_all(sparse_grid const& grid, std::size_t brick, std::span<bubble_stencil const> bubbles,
-                         std::size_t b) {
-        auto const kind = bubbles[b].words().kind();
-        if (prepared_ == static_cast<int>(kind)) return;
-        int reach = 0;
-        for (bubble_stencil const& other : bubbles) {
-            if (other.words().kind() == kind) reach = std::max(reach, other.reach());
-        }
-        rows_.gather(grid, brick, reach, kind);
-        prepared_ = static_cast<int>(kind);
     }
 
     void count(bubble_stencil const& b, std::span<brick_position const> position, std::uint32_t* air) const {
@@ -219,7 +211,6 @@ private:
 
     kernel_set kernels_;
     air_rows rows_{};
-    int prepared_ = none;
     std::vector<std::size_t> first_{};
     std::vector<std::size_t> next_{};
     std::vector<std::uint32_t> order_{};
