@@ -65,9 +65,9 @@ box=$(box_of hoodoo 0 $age $((2 * age)) $((3 * age)))
 for state in 0 $age $((2 * age)) $((3 * age)); do add hoodoo $state "$state steps"; done
 
 deep=$((60 / part))
-scene cliff $deep $deep "0.3 -1 0.2" tint -1,1 "$bed_map" builtin:cliff --resolution $((224 / part)) --rockfall \
-    --radius $((7 / part)) --measure excess --schedule 3c,1s --durability layers:values=0.03,0.004,0.02,0.006,thickness=0.13 \
-    --noise noise:amplitude=0.004,wavelength=0.1
+scene cliff $deep $deep "0.3 -1 0.25" tint -1,1 "$bed_map" builtin:cliff --resolution $((224 / part)) --rockfall \
+    --radius $((7 / part)) --measure excess --schedule 3c,1s --noise noise:amplitude=0.003,wavelength=0.1 \
+    --durability profile:at=0,0.2,0.3,0.45,0.55,0.75,0.8,1,values=0.02,0.02,0.004,0.005,0.014,0.012,0.005,0.03,amplitude=0.003,frequency=6
 box=$(box_of cliff $deep)
 add cliff $deep "tafoni in a cliff"
 # shellcheck disable=SC2086
