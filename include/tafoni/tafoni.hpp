@@ -186,6 +186,7 @@
 #include <tafoni/voxel/voxel.hpp>
 #include <tafoni/voxel/voxel_change.hpp>
 #include <tafoni/voxel/voxel_surface.hpp>
+#include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/curvature_run.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
 #include <tafoni/weathering/erase_fallen.hpp>

@@ -10,11 +10,13 @@
 #include <tafoni/geometry/self_intersections.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/repair/collapse_short_edges.hpp>
+#include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
 #include <tafoni/weathering/detail/door_scale.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -57,7 +59,8 @@ public:
     template <triangle_mesh M>
     explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
         : process_((process.validate(), std::move(process))), options_((options.validate(), options)),
-          surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions) {
+          surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions),
+          input_hash_(detail::surface_hash(surface_)) {
         scale_.enter(surface_.positions);
         report_.step = 1 / options_.step_divisor;
         start_volume_ = volume();
@@ -145,18 +148,39 @@ public:
         if (options_.check_every > 0) safe_ = snapshot();
     }
 
-private:
-    struct saved {
-        triangle_surface surface{};
-        std::vector<vertex_index> new_vertex{};
-        std::vector<double> wear{};
-        std::vector<vertex_index> input_of{};
-        std::uint64_t iterations = 0;
-        std::uint64_t edges_collapsed = 0;
-    };
+    // Checkpoints.
 
-    [[nodiscard]] saved snapshot() const {
+    /// The state as bytes, the same on every machine. O(vertices + faces).
+    [[nodiscard]] std::vector<std::byte> checkpoint() const {
+        return detail::write_checkpoint({.now = snapshot(), .safe = safe_, .retries = report_.retries, .step = report_.step},
+                                        input_hash_, detail::parameter_hash(process_, options_, input_));
+    }
+    /// Goes on from a checkpoint of a run on the same mesh with the same policies and options: the same bits as without
+    /// the break. 	hrows io_error  when the bytes are damaged or belong to another run; then nothing is changed.
+    void resume(std::span<std::byte const> bytes) {
+        detail::curvature_checkpoint c = detail::curvature_checkpoint_reader(bytes, input_.size())
+                                             .read(input_hash_, detail::parameter_hash(process_, options_, input_));
+        restore(std::move(c.now));
+        safe_ = std::move(c.safe);
+        report_.retries = c.retries;
+        report_.step = c.step;
+        report_.removed_volume = scale_.volume_to_user(start_volume_ - volume());
+    }
+
+private:
+    [[nodiscard]] detail::curvature_state snapshot() const {
         return {surface_, new_vertex_, wear_, input_of_, report_.iterations, report_.edges_collapsed};
+    }
+    void restore(detail::curvature_state s) {
+        surface_ = std::move(s.surface);
+        new_vertex_ = std::move(s.new_vertex);
+        wear_ = std::move(s.wear);
+        input_of_ = std::move(s.input_of);
+        report_.iterations = s.iterations;
+        report_.edges_collapsed = s.edges_collapsed;
+        fresh_ = false;
+        mean_edge_ = -1;
+        normal_.clear();
     }
     [[nodiscard]] surface_view view() const noexcept {
         return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_};
@@ -297,15 +321,7 @@ private:
             safe_ = snapshot();
             return true;
         }
-        surface_ = safe_.surface;
-        new_vertex_ = safe_.new_vertex;
-        wear_ = safe_.wear;
-        input_of_ = safe_.input_of;
-        report_.iterations = safe_.iterations;
-        report_.edges_collapsed = safe_.edges_collapsed;
-        fresh_ = false;
-        mean_edge_ = -1;
-        normal_.clear();
+        restore(safe_);
         report_.step /= 2;
         ++report_.retries;
         return report_.step * options_.step_divisor > std::ldexp(1.0, -static_cast<int>(options_.retries) - 1) * 1.5;
@@ -337,7 +353,8 @@ private:
     double mean_edge_ = -1;  ///< of the surface now; below 0: not measured
     double shortest_ = 0;
     double start_volume_ = 0;
-    saved safe_{};
+    std::uint64_t input_hash_ = 0;
+    detail::curvature_state safe_{};
 };
 
 }  // namespace tafoni
