@@ -68,7 +68,7 @@ paths=$((3 * every))
 
 . "$root/cmake/packages.sh"
 need_packages "$install" g++ cmake ninja-build libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev \
-    nlohmann-json3-dev f3d xvfb xauth imagemagick fonts-dejavu-core gnuplot-nox || exit 1
+    nlohmann-json3-dev libpng-dev f3d xvfb xauth imagemagick fonts-dejavu-core gnuplot-nox || exit 1
 
 mkdir -p "$out"
 if [ -z "$weather" ]; then

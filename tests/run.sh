@@ -26,7 +26,7 @@ while [ $# -gt 0 ]; do
 done
 
 . "$root/cmake/packages.sh"
-packages="g++ cmake ninja-build catch2 libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev nlohmann-json3-dev"
+packages="g++ cmake ninja-build catch2 libeigen3-dev librange-v3-dev libboost-graph-dev libcli11-dev nlohmann-json3-dev libpng-dev"
 [ $mode = fast ] || packages="$packages clang-19 libclang-rt-19-dev"
 [ $mode = full ] && packages="$packages libbenchmark-dev"
 need_packages "$install" $packages || exit 1

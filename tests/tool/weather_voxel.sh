@@ -228,6 +228,17 @@ for image in revolve sweep:depth=0.5 revolve:axis=left; do
     [ "$(number image voxels_initial)" -gt 0 ] || complain "an image gives no rock"
 done
 {
+    printf '\211PNG\015\012\032\012\000\000\000\015IHDR\000\000\000\005\000\000\000\004\010\000\000\000\000c'
+    printf 'X\252\234\000\000\000\024IDATx\332c\370\317\300\300\360\237\341\0772\002\211\000\000\217\210\013'
+    printf '\365\227\021v\175\000\000\000\000IEND\256B\140\202'
+} > column.png
+if "$weather" voxel column.png -o png --resolution 20 --steps 2 --progress none > png.log 2>&1; then
+    expect 0 pgm "$weather" voxel column.pgm -o pgm --resolution 20 --steps 2 --progress none
+    cmp png/weathered.obj pgm/weathered.obj || complain "an image in PNG gives another rock than in PGM"
+else
+    says png "built without libpng"
+fi
+{
     printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n'
     printf 'zzzzzAAzzAAzzzzzzzzzzAAzzAAzzzzzzzzzzAAzzAAzzzzzzzzzzAAzzAAzzzzz'
 } > grid.nrrd
