@@ -1,4 +1,4 @@
-// Volumes in NRRD files: raw or ASCII samples behind a text header.
+// Volumes in NRRD files: raw samples behind a text header.
 #pragma once
 
 #include <tafoni/core/vector.hpp>
@@ -18,7 +18,7 @@ struct nrrd_volume {
     bool placed = false;                 ///< the file says where it lies
 };
 
-/// Reads a three-dimensional NRRD with raw samples of 8 to 32 bits or float, axis-aligned.
+/// Reads a volume as `tafoni::read_nrrd` does; `origin` is the place of the first sample.
 /// \throws tafoni::io_error
 nrrd_volume read_nrrd(std::string const& path);
 
