@@ -20,8 +20,12 @@
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/graph/make_link_graph.hpp>
 #include <tafoni/percolation/cone_rain.hpp>
+#include <tafoni/field/durability_profile.hpp>
+#include <tafoni/voxel/bubble_mixture.hpp>
+#include <tafoni/voxel/bubble_shapes.hpp>
 #include <tafoni/weathering/frost_presets.hpp>
 #include <tafoni/weathering/frost_run.hpp>
+#include <tafoni/weathering/weathered_voxels.hpp>
 
 #include <bit>
 #include <cinttypes>
@@ -252,6 +256,63 @@ void frost_on_voxels(fingerprint& f) {
     add_run(f, run);
 }
 
+/// A crumbling knoll under everything that voxel weathering has.
+auto knoll(tafoni::curvature_measure measure) {
+    tafoni::gradient_noise const rough{.seed = 8, .frequency = 0.15};
+    tafoni::sparse_grid g({.size = {44, 40, 38}}, tafoni::up_axis::plus_z,
+                          {{tafoni::border_kind::air, tafoni::border_kind::extend, tafoni::border_kind::air,
+                            tafoni::border_kind::air, tafoni::border_kind::rock, tafoni::border_kind::air}});
+    for (std::size_t b = 0; b < g.brick_count(); ++b) {
+        g.fill_brick(b, [&](tafoni::voxel v) {
+            double const x = v.x - 30;
+            double const y = v.y - 20;
+            bool const inside = x * x + y * y + v.z * v.z < 700 + 300 * rough(tafoni::vec3{1.0 * v.x, 1.0 * v.y, 1.0 * v.z});
+            return inside ? tafoni::voxel_state::rock : tafoni::voxel_state::air;
+        });
+    }
+    auto const process = tafoni::voxel_weathering{
+        .bubbles = tafoni::bubble_mixture{.bubbles = {tafoni::sphere_bubble{.radius = 4}, tafoni::gumdrop_bubble{.radius = 6}},
+                                          .field = tafoni::gradient_noise{.seed = 9, .frequency = 0.1}},
+        .durability = tafoni::durability_profile<>{.points = {{0, 0.02, 0.01, 0.2}, {20, 0.01}}}};
+    return tafoni::voxel_run(std::move(g), process,
+                             {.measure = measure,
+                              .skin_depth = measure == tafoni::curvature_measure::air_share ? 1 : 2,
+                              .colluvium = tafoni::repose_rule{.angle = 40, .baseline = 2},
+                              .rockfall = tafoni::rockfall_options{},
+                              .seed = 11});
+}
+template <class Run>
+void add_voxels(fingerprint& f, Run const& run) {
+    for (std::byte const b : run.checkpoint()) f.add(std::to_integer<unsigned>(b));
+    auto const out = tafoni::extract_weathered_voxels(run);
+    for (auto const* numbers : {&out.rock, &out.colluvium}) {
+        for (auto const* values : {&numbers->curvature, &numbers->durability, &numbers->decimation, &numbers->cavernous}) {
+            for (double const v : *values) f.add(v);
+        }
+    }
+    for (auto const* mesh : {&out.surface.rock.mesh, &out.surface.colluvium.mesh}) {
+        for (auto const& p : mesh->positions) f.add(p);
+        for (auto const c : mesh->corners) f.add(c);
+    }
+}
+
+void voxels_by_steps(fingerprint& f) {
+    auto run = knoll(tafoni::curvature_measure::air_share);
+    run.run({.phases = {{.steps = 8}, {.steps = 4, .spheroidal = 0.25, .cavernous = 1}}});
+    add_voxels(f, run);
+}
+void voxels_on_threads(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    auto run = knoll(tafoni::curvature_measure::signed_excess);
+    run.run({.phases = {{.steps = 30}, {.steps = 20, .spheroidal = 1, .cavernous = 1}}}, {}, pool);
+    add_voxels(f, run);
+}
+void voxels_by_events(fingerprint& f) {
+    auto run = knoll(tafoni::curvature_measure::air_share);
+    run.run({.phases = {{.steps = 5, .spheroidal = 1, .cavernous = 0.5}}, .clock = tafoni::voxel_clock::events});
+    add_voxels(f, run);
+}
+
 }  // namespace
 
 int main() {
@@ -268,4 +329,7 @@ int main() {
     print("frost_of_the_addon", frost_of_the_addon);
     print("frost_in_batches", frost_in_batches);
     print("frost_on_voxels", frost_on_voxels);
+    print("voxels_by_steps", voxels_by_steps);
+    print("voxels_on_threads", voxels_on_threads);
+    print("voxels_by_events", voxels_by_events);
 }
