@@ -65,6 +65,8 @@
 #include <tafoni/fluid/emitter.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
+#include <tafoni/fluid/sph.hpp>
+#include <tafoni/fluid/sph_options.hpp>
 #include <tafoni/geometry/approx.hpp>
 #include <tafoni/geometry/bvh.hpp>
 #include <tafoni/geometry/concepts.hpp>
