@@ -16,7 +16,7 @@ namespace detail {
 struct estimate_curvature_fn {
     /// H per vertex, 1 / length unit, positive on ridges. O(vertices + faces) beside the estimator's own cost.
     /// \throws invalid_input  as `triangle_surface::copy_of`.
-    template <triangle_mesh M, curvature_estimator Estimator = tensor_fit, executor E = inline_executor>
+    template <polygon_mesh M, curvature_estimator Estimator = tensor_fit, executor E = inline_executor>
     [[nodiscard]] std::vector<double> operator()(M const& mesh, Estimator const& estimator = {}, E const& executor = {}) const {
         triangle_surface const s = triangle_surface::copy_of(mesh);
         vertex_rings const rings(s.positions.size(), s.triangles);

@@ -22,8 +22,9 @@ struct triangle_surface {
     std::vector<std::array<std::uint32_t, 3>> triangles{};
 
     /// A copy of any mesh of triangles; vertices and faces keep their numbers. O(vertices + faces).
-    /// \throws invalid_input  `non_finite_vertex`, `index_out_of_range`, `size_overflow`.
-    template <triangle_mesh M>
+    /// \throws invalid_input  `non_finite_vertex`, `index_out_of_range`, `size_overflow`; `unsupported` with the first
+    ///         face that is no triangle: `triangulate` makes some of it.
+    template <polygon_mesh M>
     static triangle_surface copy_of(M const& mesh) {
         using access = mesh_access<M>;
         triangle_surface s;
@@ -35,6 +36,16 @@ struct triangle_surface {
         for (std::size_t v = 0; v < n; ++v) s.positions.push_back(access::position(mesh, v));
         s.triangles.reserve(f);
         for (std::size_t t = 0; t < f; ++t) {
+            if constexpr (!triangle_mesh<M>) {
+                std::size_t const size = access::face_size(mesh, t);
+                if (size != 3) {
+                    detail::fail<invalid_input>(errc::unsupported,
+                                                "triangle_surface: face " + std::to_string(t) + " has " +
+                                                    std::to_string(size) + " corners; triangulate the mesh first",
+                                                {.kind = entity::face, .index = t, .value = static_cast<double>(size),
+                                                 .limit = 3});
+                }
+            }
             std::array<std::uint32_t, 3> corners{};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::uint64_t const c = access::corner(mesh, t, k);

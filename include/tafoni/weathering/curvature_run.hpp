@@ -56,7 +56,7 @@ class curvature_run {
 public:
     /// O(vertices + faces).
     /// \throws invalid_input  for a mesh with indices or coordinates out of range, or options out of range.
-    template <triangle_mesh M>
+    template <polygon_mesh M>
     explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
         : process_((process.validate(), std::move(process))), options_((options.validate(), options)),
           surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions),

@@ -32,7 +32,7 @@ struct find_wrinkle_path_fn {
     /// O(faces) for the normals, then O(path), or O(vertices log vertices) per section without a direct way.
     /// \throws invalid_input  `bad_parameter` for fewer than two controls or equal neighbours in the list,
     ///         `index_out_of_range`; `bad_topology` with both vertices where no way along edges leads.
-    template <triangle_mesh M>
+    template <polygon_mesh M>
     [[nodiscard]] std::vector<vertex_index> operator()(M const& mesh, std::span<vertex_index const> controls) const {
         return (*this)(triangle_surface::copy_of(mesh), controls);
     }

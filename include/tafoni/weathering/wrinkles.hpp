@@ -71,7 +71,7 @@ public:
     /// O(faces + region log region).
     /// \throws invalid_input  `index_out_of_range` for a vertex, `bad_parameter` for radii and strengths, and what
     ///         `find_wrinkle_path` throws.
-    template <triangle_mesh M>
+    template <polygon_mesh M>
     wrinkle_pattern(M const& mesh, std::span<wrinkle const> wrinkles, std::span<enlargement const> enlargements = {},
                     wrinkle_options const& options = {})
         : options_((options.validate(), options)) {

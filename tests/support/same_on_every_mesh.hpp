@@ -1,0 +1,60 @@
+// What a mesh type has to show: every estimator and a weathering run give the bits that they give on plain triangles.
+#ifndef TAFONI_TESTS_SUPPORT_SAME_ON_EVERY_MESH_HPP
+#define TAFONI_TESTS_SUPPORT_SAME_ON_EVERY_MESH_HPP
+
+#include "support/curved_surfaces.hpp"
+
+#include <tafoni/curvature/bubble_ratio.hpp>
+#include <tafoni/curvature/cotangent.hpp>
+#include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/curvature/quadric_fit.hpp>
+#include <tafoni/curvature/tensor_fit.hpp>
+#include <tafoni/testing/mesh_laws.hpp>
+#include <tafoni/weathering/curvature_run.hpp>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tafoni_test {
+
+/// A ring with uneven triangles and a hole in it, coordinates that float holds exactly.
+[[nodiscard]] inline tafoni::triangle_surface uneven_ring() {
+    tafoni::triangle_surface s = torus_surface(14, 9, 0.3).mesh;
+    for (tafoni::vec3& p : s.positions) {
+        for (int d = 0; d < 3; ++d) p[d] = std::floor(p[d] * 0x1p18) * 0x1p-18;
+    }
+    s.triangles.erase(s.triangles.begin() + 40, s.triangles.begin() + 44);
+    return s;
+}
+
+/// What differs; empty where `mesh` weathers as `plain` does.
+template <tafoni::polygon_mesh M>
+[[nodiscard]] std::vector<std::string> differences(M const& mesh, tafoni::triangle_surface const& plain) {
+    std::vector<std::string> out = tafoni::laws::mesh(mesh);
+    auto const estimator = [&](char const* name, auto const& e) {
+        std::vector<double> const ours = tafoni::estimate_curvature(mesh, e);
+        std::vector<double> const theirs = tafoni::estimate_curvature(plain, e);
+        bool same = ours.size() == theirs.size();
+        for (std::size_t v = 0; same && v < ours.size(); ++v) {
+            same = std::bit_cast<std::uint64_t>(ours[v]) == std::bit_cast<std::uint64_t>(theirs[v]);
+        }
+        if (!same) out.push_back(name);
+    };
+    estimator("tensor_fit", tafoni::tensor_fit{});
+    estimator("cotangent", tafoni::cotangent{});
+    estimator("quadric_fit", tafoni::quadric_fit{});
+    estimator("bubble_ratio", tafoni::bubble_ratio{});
+    tafoni::curvature_run ours(mesh);
+    tafoni::curvature_run theirs(plain);
+    ours.run(5);
+    theirs.run(5);
+    if (!(ours.surface() == theirs.surface()) || ours.report().iterations != 5) out.push_back("curvature_run");
+    return out;
+}
+
+}  // namespace tafoni_test
+
+#endif
