@@ -23,7 +23,7 @@ void add_rock_options(CLI::App& c, voxel_arguments& a) {
 }
 
 void add_process_options(CLI::App& c, voxel_arguments& a) {
-    c.add_option("--bubble", a.bubbles, "SPEC, repeatable with above=: what curvature is estimated with; default: sphere");
+    c.add_option("--bubble", a.bubbles, "SPEC, repeatable with above=: what curvature is estimated with; default: sphere")->allow_extra_args(false);
     c.add_option("--radius", a.radius, "of bubbles that say none, voxels")->check(between(0.1, 48.0))->capture_default_str();
     c.add_option("--rate", a.rate, "SPEC: decay over the estimate")->capture_default_str();
     c.add_option("--measure", a.measure, "share: of air in the bubble; excess: what it differs by from one half")->check(CLI::IsMember({"share", "excess"}))->capture_default_str();
@@ -38,7 +38,7 @@ void add_process_options(CLI::App& c, voxel_arguments& a) {
     c.add_option("--repose", a.repose, "angle of repose, degrees")->check(between(0.0, 89.0))->capture_default_str();
     c.add_option("--baseline", a.baseline, "columns over which the slope is measured")->check(CLI::Range(1u, 16u))->capture_default_str();
     c.add_flag("--rockfall", a.rockfall, "rock that nothing holds falls");
-    c.add_option("--joints", a.joints, "SPEC, repeatable: cracks that cut rock for --rockfall");
+    c.add_option("--joints", a.joints, "SPEC, repeatable: cracks that cut rock for --rockfall")->allow_extra_args(false);
     c.add_option("--friction", a.friction, "degrees up to which a cut-off block stays on its joint")->check(between(0.0, 89.0))->capture_default_str();
     c.add_option("--depth", a.depth, "1: voxels beside air weather; 2: the next ones too")->check(CLI::Range(1, 2))->capture_default_str();
 }
@@ -50,7 +50,7 @@ void add_run_options(CLI::App& c, voxel_arguments& a) {
     c.add_option("--snapshots", a.snapshots, "write a snapshot every so many steps; 0: none")->capture_default_str();
     c.add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end");
     c.add_option("--resume", a.resume, "checkpoint to go on from");
-    c.add_option("--format", a.formats, "obj,ply,stl,vtp")->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
+    c.add_option("--format", a.formats, "obj,ply,stl,vtp")->allow_extra_args(false)->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
     c.add_option("--progress", a.progress, "bar, json or none; default: bar on a terminal")->check(CLI::IsMember({"bar", "json", "none", "auto"}));
     c.add_flag("--separate-blocks", a.separate_blocks, "one file for each fallen block");
 }
@@ -61,7 +61,8 @@ CLI::App* add_voxel_command(CLI::App& app, voxel_arguments& a) {
     CLI::App* const c = app.add_subcommand("voxel", "Spheroidal and cavernous weathering: edges round off, hollows grow");
     c->footer(
         "SPEC is name:key=value,key=value. Radii of bubbles are in voxels, other lengths in the unit of the model.\n"
-        "  builtin:      hoodoo:layers=,seed= | cube | corner | cliff | outcrop:resolution=,seed=\n"
+        "  builtin:      hoodoo:radius=,plinth=,bulge=,seed= | cube | corner:wall=,height= |\n"
+        "                cliff:dents=,wavelength=,seed= | outcrop:resolution=,seed=\n"
         "  --image       revolve:axis=middle|left,dark= | sweep:depth=,dark= (depth as a share of the width)\n"
         "  --bubble      sphere | ellipsoid:axes= | gumdrop:base= | disc:thickness= | all: radius=,above= (share of\n"
         "                the height from which it holds) | mixture:shapes=,radii=,wavelength=,above=\n"
@@ -69,7 +70,7 @@ CLI::App* add_voxel_command(CLI::App& app, voxel_arguments& a) {
         "  --durability  constant:value= | profile:at=,values=,amplitude=,frequency= | layers:values=,thickness= |\n"
         "                grid:path=FILE.nrrd,low=,high= | FILE (lines: altitude durability [amplitude frequency])\n"
         "  --noise       noise:amplitude=,wavelength=,octaves=\n"
-        "  --joints      planes:normal=,spacing=,offset= | discs:count=,radius=,normal=,spread= | file:path=\n"
+        "  --joints      planes:normal=,spacing=,offset= | discs:normal=,spread=,spacing=,radius= | file:path=\n"
         "Results and snapshots that an older run left in the output folder are replaced; other files stay.\n"
         "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (a checkpoint is written).");
     add_rock_options(*c, a);

@@ -4,9 +4,9 @@
 #include "spec.hpp"
 #include "voxel_command.hpp"
 
-#include <tafoni/core/random.hpp>
 #include <tafoni/field/noise.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
+#include <tafoni/voxel/random_joints.hpp>
 #include <tafoni/voxel/rates.hpp>
 
 #include <algorithm>
@@ -145,7 +145,7 @@ joint_set parse_joints(std::vector<std::string> const& texts, box3 const& bounds
     joint_set out;
     vec3 const middle = 0.5 * (bounds.lo + bounds.hi);
     double const diagonal = bounds.diagonal();
-    std::uint64_t drawn = 0;
+    std::uint64_t families = 0;
     for (std::string const& text : texts) {
         spec s = spec::parse("--joints", text);
         if (s.name() == "planes") {
@@ -157,18 +157,15 @@ joint_set parse_joints(std::vector<std::string> const& texts, box3 const& bounds
                 out.discs.push_back({.centre = vec3{middle + (k + offset - 0.5) * spacing * normal}, .normal = normal, .radius = diagonal});
             }
         } else if (s.name() == "discs") {
-            auto const count = static_cast<std::size_t>(s.number("count", 20, 0, 100000));
-            double const radius = s.number("radius", diagonal / 5, 0, 1e150);
-            vec3 const normal = s.direction("normal", {0, 0, 1});
-            double const spread = s.number("spread", 0.2, 0, 1e3);
-            for (std::size_t i = 0; i < count; ++i) {
-                stream random(seed, stage::user, (std::uint64_t{1} << 40) + drawn++);
-                joint_disc disc{.radius = radius};
-                for (int a = 0; a < 3; ++a) disc.centre[a] = random.uniform(bounds.lo[a], bounds.hi[a]);
-                for (int a = 0; a < 3; ++a) disc.normal[a] = normal[a] + spread * random.uniform(-1, 1);
-                if (length(disc.normal) < 1e-9) disc.normal = normal;
-                out.discs.push_back(disc);
-            }
+            random_joints::family f{.normal = s.direction("normal", {0, 0, 1}), .spread = s.number("spread", 10, 0, 60)};
+            f.spacing = s.number("spacing", diagonal / 8, 1e-100, 1e100);
+            auto const radius = s.list("radius", {diagonal / 5});
+            if (radius.empty() || radius.size() > 2) s.fail("radius: one number or two, least and largest, are needed");
+            f.radius_min = radius.front();
+            f.radius_max = radius.back();
+            if (!(f.radius_min > 0 && f.radius_max >= f.radius_min && f.radius_max <= 1e100)) s.fail("radius: must be above 0 and ascend");
+            joint_set const strewn = random_joints{.families = {f}}(bounds, seed + families++);
+            out.discs.insert(out.discs.end(), strewn.discs.begin(), strewn.discs.end());
         } else if (s.name() == "file") {
             std::string const path = s.word("path", "");
             auto const numbers = load_reals(path);

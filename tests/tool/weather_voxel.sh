@@ -96,7 +96,7 @@ expect 1 huge "$weather" voxel builtin:cube -o none --resolution 60000 --steps 0
 # a run with everything on, its files and its report
 printf 'relative\n0 0.006\n0.3 0.006 0.003 9\n0.3 0.03\n0.5 0.02\n0.5 0.004\n0.7 0.004\n0.7 0.05\n1 0.02\n' > layers.txt
 part="--resolution 40 --radius 3 --noise noise:amplitude=0.002 --colluvium --margin 3 --repose 35 --baseline 2
-    --rockfall --joints discs:count=8,radius=0.3 --snapshots 10 --format obj,ply,stl,vtp --progress none"
+    --rockfall --joints discs:normal=1,0,1,spacing=0.2,radius=0.3 --snapshots 10 --format obj,ply,stl,vtp --progress none"
 plain_rock=$part
 part="$part --durability layers.txt"
 small="$part --steps 40"
@@ -261,7 +261,8 @@ try --rate quartic:scale=2,lowest=0.1,highest=1 --depth 2 --measure excess
 try --durability profile:at=0,0.5,1,values=0.01,0.03,0.02,amplitude=0.002,frequency=8
 try --durability layers:values=0.01,0.05,0.02,thickness=0.1
 try --durability grid:path=grid.nrrd,place=fit --noise noise:wavelength=0.2,octaves=2
-try --rockfall --joints planes:normal=0,0.2,1,spacing=0.2 --joints discs:count=5,normal=1,0,0,spread=0.5 --friction 30
+try --rockfall --joints planes:normal=0,0.2,1,spacing=0.2 --joints discs:normal=1,0,0,spread=20,radius=0.1,0.2 --friction 30
+expect 0 order "$weather" voxel --bubble disc --format obj builtin:cube --resolution 8 --steps 1 --progress none -o try
 try --border open --rockfall --separate-blocks
 printf '0 0 0.5, 0 0 1, 0.5\n' > discs.txt
 try --rockfall --joints file:path=discs.txt
