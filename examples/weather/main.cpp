@@ -1,5 +1,6 @@
 // weather: weathers a rock. One subcommand per process; all share INPUT, -o DIR and the exit codes
 // 0 (done), 1 (bad input), 2 (usage), 130 (stopped by Ctrl-C, resumable).
+#include "curvature_command.hpp"
 #include "frost_command.hpp"
 #include "progress.hpp"
 #include "spec.hpp"
@@ -29,6 +30,8 @@ int main(int argc, char** argv) {
     CLI::App* const frost_command = weather::add_frost_command(app, frost);
     weather::voxel_arguments voxel;
     CLI::App* const voxel_command = weather::add_voxel_command(app, voxel);
+    weather::curvature_arguments curvature;
+    CLI::App* const curvature_command = weather::add_curvature_command(app, curvature);
     try {
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
@@ -38,6 +41,7 @@ int main(int argc, char** argv) {
     try {
         if (frost_command->parsed()) return weather::run_frost(frost) ? 0 : exit_interrupted;
         if (voxel_command->parsed()) return weather::run_voxel(voxel) ? 0 : exit_interrupted;
+        if (curvature_command->parsed()) return weather::run_curvature(curvature) ? 0 : exit_interrupted;
     } catch (weather::usage_error const& e) {
         std::fprintf(stderr, "weather: %s\n", e.what());
         return exit_usage;
