@@ -201,10 +201,11 @@ public:
     }
     /// Replaces the options between steps; `up` and `border` stay those of the grid. Strong guarantee.
     void replace(voxel_options const& options) {
-        voxel_options former = std::exchange(core_.options, checked(options));
+        voxel_options next = checked(options);
+        voxel_options former = std::exchange(core_.options, std::move(next));
         try {
             auto rates = core_.rates;
-            rates.read(core_.process, options.measure);
+            rates.read(core_.process, core_.options.measure);
             core_.rescan(inline_executor{});
             core_.start_rockfall();
             core_.rates = std::move(rates);

@@ -83,9 +83,9 @@ public:
         spare_.reset();
         start_rockfall();
     }
-    void start_rockfall() {
+    /// Rockfall looks at the whole grid in the next step.
+    void start_rockfall() noexcept {
         falls_.reset();
-        if (options.rockfall) falls_.emplace(*options.rockfall);
         first_fall_ = true;
     }
 
@@ -303,6 +303,7 @@ private:
             if (c.before == voxel_state::rock) removed_.push_back(c.at);
         }
         std::size_t const before = changes_.size();
+        if (!falls_) falls_.emplace(*options.rockfall);
         fallen_ = falls_->fall(grid, removed_, count.steps + 1, threads, changes_);
         for (fallen_block const& b : fallen_) next_.voxels_fallen += b.voxels.size();
         next_.blocks += fallen_.size();
@@ -351,8 +352,7 @@ private:
         }
         std::swap(grid, *spare_);
         spare_.reset();
-        falls_.reset();
-        if (options.rockfall) start_rockfall();
+        start_rockfall();
     }
     /// What `change` has made holds from now on. Nothing here throws.
     void finish(lap_clock& clock) noexcept {
