@@ -1,0 +1,418 @@
+#include "support/curved_surfaces.hpp"
+
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/fluid/mesh_boundary.hpp>
+#include <tafoni/fluid/sph.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <numeric>
+
+using namespace tafoni;
+using namespace tafoni_test;
+
+namespace {
+
+box3 between(vec3 const& lo, vec3 const& hi) {
+    box3 b;
+    b.lo = lo;
+    b.hi = hi;
+    return b;
+}
+box_sink everywhere() { return {.keep = between(vec3{-1e6, -1e6, -1e6}, vec3{1e6, 1e6, 1e6})}; }
+
+template <class Scalar>
+sph<Scalar> placed(std::vector<fluid_particle> const& all, sph_options const& o) {
+    sph<Scalar> f(std::vector<box_emitter>{}, everywhere(), o);
+    f.place(all);
+    return f;
+}
+/// A lattice of n^3 with the spacing given, moved by up to `jitter` spacings, with random velocities.
+std::vector<fluid_particle> cloud(int n, double spacing, double jitter, double speed = 0) {
+    std::vector<fluid_particle> all;
+    stream random(5, 0, 0);
+    auto const around = [&](double size) {
+        double const a = random.uniform(-1, 1);
+        double const b = random.uniform(-1, 1);
+        double const c = random.uniform(-1, 1);
+        return vec3{size * a, size * b, size * c};
+    };
+    for (int k = 0; k < n; ++k) {
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i < n; ++i) {
+                vec3 const q{spacing * i, spacing * j, spacing * k};
+                vec3 const shift = around(jitter * spacing);
+                all.push_back({.id = all.size(), .position = q + shift, .velocity = around(speed)});
+            }
+        }
+    }
+    return all;
+}
+template <class Scalar>
+std::vector<vec3> state(sph<Scalar> const& f) {
+    std::vector<vec3> all;
+    for (std::size_t i = 0; i < f.particle_count(); ++i) {
+        all.push_back(f.position(i));
+        all.push_back(f.velocity(i));
+    }
+    return all;
+}
+/// An open box without lid, faces to the inside.
+triangle_surface tub(double wide, double high) {
+    triangle_surface s;
+    for (int k = 0; k < 8; ++k) s.positions.push_back(vec3{(k & 1) != 0 ? wide : 0.0, (k & 2) != 0 ? wide : 0.0, (k & 4) != 0 ? high : 0.0});
+    s.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {1, 5, 7}, {1, 7, 3}, {3, 7, 6}, {3, 6, 2}, {2, 6, 4}, {2, 4, 0}};
+    return s;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("the kernel integrates to one", "", float, double) {
+    // What a pair adds to its density is the kernel at its distance; a pair stands alone every 20 h.
+    for (double const smoothing : {1.0, 1.3}) {
+        double const h = 2 * smoothing;
+        std::vector<fluid_particle> pairs;
+        int const n = 400;
+        for (int k = 0; k < n; ++k) {
+            vec3 const at{20 * h * (k % 20), 20 * h * (k / 20), 0};
+            pairs.push_back({.id = pairs.size(), .position = at});
+            pairs.push_back({.id = pairs.size(), .position = at + vec3{0, 0, 2 * h * (k + 0.5) / n}});
+        }
+        pairs.push_back({.id = pairs.size(), .position = vec3{-50 * h, 0, 0}});
+        auto f = placed<TestType>(pairs, {.spacing = 2, .smoothing = smoothing, .sound_speed = 1e-3});
+        f.step(open_space{}, inline_executor{});
+        double const alone = f.density(pairs.size() - 1);
+        double sum = 0;
+        for (int k = 0; k < n; ++k) {
+            double const r = 2 * h * (k + 0.5) / n;
+            sum += (f.density(2 * static_cast<std::size_t>(k)) - alone) * 2 * tau * r * r * (2 * h / n);
+        }
+        CHECK(sum == Approx(8).epsilon(1e-3));  // the volume of a particle
+    }
+}
+
+TEMPLATE_TEST_CASE("inside a lattice the density is that at rest, within a hundredth", "", float, double) {
+    for (double const smoothing : {0.95, 1.0, 1.2, 1.5}) {
+        auto f = placed<TestType>(cloud(11, 0.01, 0), {.spacing = 0.01, .smoothing = smoothing});
+        f.step(open_space{}, inline_executor{});
+        CHECK(f.density(5 + 11 * (5 + 11 * 5)) == Approx(1).epsilon(0.01));
+    }
+}
+
+TEMPLATE_TEST_CASE("without gravity and walls momentum stays", "", float, double) {
+    auto f = placed<TestType>(cloud(8, 1, 0.4, 3), {.spacing = 1, .sound_speed = 20, .viscosity = 0.05, .gravity = vec3{0, 0, 0}});
+    auto const momentum = [&] {
+        vec3 sum{0, 0, 0};
+        for (std::size_t i = 0; i < f.particle_count(); ++i) sum += f.velocity(i);
+        return sum;
+    };
+    auto const motion = [&] {
+        double sum = 0;
+        for (std::size_t i = 0; i < f.particle_count(); ++i) sum += length(f.velocity(i));
+        return sum;
+    };
+    vec3 const before = momentum();
+    double changed = 0;
+    double const first = motion();
+    for (int k = 0; k < 40; ++k) {
+        f.step(open_space{}, inline_executor{});
+        changed = std::max(changed, std::fabs(motion() - first));
+    }
+    CHECK(changed > 0.02 * first);  // forces did act
+    CHECK(length(momentum() - before) < (sizeof(TestType) == 8 ? 1e-12 : 1e-5) * motion());
+}
+
+TEMPLATE_TEST_CASE("two particles push each other apart by equal and opposite forces", "", float, double) {
+    auto f = placed<TestType>({{.id = 3, .position = vec3{0, 0, 0}}, {.id = 9, .position = vec3{0.3, 0.1, -0.2}}},
+                              {.spacing = 1, .smoothing = 0.9, .sound_speed = 5, .gravity = vec3{0, 0, 0}});
+    for (int k = 0; k < 5; ++k) f.step(open_space{}, inline_executor{});
+    CHECK(f.id(0) == 3);
+    CHECK(f.id(1) == 9);
+    CHECK(f.velocity(0) == -f.velocity(1));
+    // A pair is lighter than water: nothing pulls, and at rest nothing moves.
+    CHECK(f.velocity(0) == vec3{0, 0, 0});
+    auto crowd = placed<TestType>(cloud(3, 0.5, 0), {.spacing = 1, .sound_speed = 5, .gravity = vec3{0, 0, 0}});
+    crowd.step(open_space{}, inline_executor{});
+    CHECK(crowd.velocity(0)[0] < 0);
+    CHECK(crowd.velocity(26)[0] > 0);
+}
+
+TEMPLATE_TEST_CASE("neighbours by the grid are those of brute force, and symmetric", "", float, double) {
+    for (int scene = 0; scene < 4; ++scene) {
+        std::vector<TestType> x;
+        std::vector<TestType> y;
+        std::vector<TestType> z;
+        stream random(8, 0, static_cast<std::uint64_t>(scene));
+        double const size = scene == 3 ? 1e5 : 9;  // the last: cells grow
+        for (int k = 0; k < 700; ++k) {
+            double const a = random.uniform(-size, size);
+            double const b = random.uniform(-size, size);
+            double const c = random.uniform(-size, size);
+            bool const whole = scene == 1 || scene == 3;  // on the edges of cells, and in a plane
+            x.push_back(static_cast<TestType>(whole ? std::floor(a) : a));
+            y.push_back(static_cast<TestType>(whole ? 2 * std::floor(b / 2) : b));
+            z.push_back(static_cast<TestType>(scene == 2 ? 0 : whole ? 2 * std::floor(c / 2) : c));
+        }
+        tafoni::detail::particle_grid<TestType> grid;
+        grid.build(std::span<TestType const>(x), std::span<TestType const>(y), std::span<TestType const>(z), inline_executor{});
+        auto const close = [&](std::size_t i, std::size_t j) {
+            TestType const dx = x[i] - x[j];
+            TestType const dy = y[i] - y[j];
+            TestType const dz = z[i] - z[j];
+            return dx * dx + dy * dy + dz * dz < 4;
+        };
+        std::vector<std::vector<std::size_t>> found(x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            tafoni::detail::sph_spans spans;
+            grid.around(x[i], y[i], z[i], spans);
+            for (std::uint32_t r = 0; r < spans.count; ++r) {
+                for (std::uint32_t k = spans.row[r].begin; k < spans.row[r].end; ++k) {
+                    if (close(i, grid.order()[k])) found[i].push_back(grid.order()[k]);
+                }
+            }
+            std::sort(found[i].begin(), found[i].end());
+        }
+        std::size_t pairs = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            std::vector<std::size_t> expected;
+            for (std::size_t j = 0; j < x.size(); ++j) {
+                if (close(i, j)) expected.push_back(j);
+            }
+            REQUIRE(found[i] == expected);
+            pairs += expected.size() - 1;
+            for (std::size_t const j : found[i]) REQUIRE(std::binary_search(found[j].begin(), found[j].end(), i));
+        }
+        CHECK((scene == 3 || pairs > 500));
+    }
+}
+
+TEMPLATE_TEST_CASE("the order in which particles are given changes nothing", "", float, double) {
+    auto all = cloud(9, 1, 0.45, 2);
+    sph_options const o{.spacing = 1, .sound_speed = 30};
+    auto a = placed<TestType>(all, o);
+    stream random(1, 0, 0);
+    for (std::size_t k = all.size(); k > 1; --k) std::swap(all[k - 1], all[random.index_below(k)]);
+    auto b = placed<TestType>(all, o);
+    for (int k = 0; k < 15; ++k) {
+        a.step(open_space{}, inline_executor{});
+        b.step(open_space{}, inline_executor{});
+    }
+    CHECK(state(a) == state(b));
+    for (std::size_t i = 1; i < a.particle_count(); ++i) REQUIRE(a.id(i - 1) < a.id(i));
+}
+
+TEMPLATE_TEST_CASE("the sums are the same bits with and without AVX2", "", float, double) {
+    auto const n = std::size_t{500};
+    std::size_t const pad = tafoni::detail::sph_lanes<TestType>::count;
+    std::array<std::vector<TestType>, 8> in;
+    stream random(4, 0, 0);
+    for (auto& a : in) {
+        for (std::size_t k = 0; k < n + pad; ++k) a.push_back(static_cast<TestType>(k < n ? random.uniform(0, 5) : 0.0));
+    }
+    tafoni::detail::particle_grid<TestType> grid;
+    auto const part = [&](std::size_t d) { return std::span<TestType const>(in[d]).first(n); };
+    grid.build(part(0), part(1), part(2), inline_executor{});
+    std::array<std::vector<TestType>, 8> sorted = in;
+    std::vector<tafoni::detail::sph_spans> spans(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t d = 0; d < 8; ++d) sorted[d][k] = in[d][grid.order()[k]];
+        grid.around(sorted[0][k], sorted[1][k], sorted[2][k], spans[k]);
+    }
+    std::array<std::vector<std::vector<TestType>>, 2> out;
+    for (bool const avx2 : {false, true}) {
+        auto& o = out[avx2 ? 1 : 0];
+        o.assign(5, std::vector<TestType>(n + pad, TestType(0)));
+        o[4] = sorted[7];
+        tafoni::detail::sph_arrays<TestType> const a{
+            .x = sorted[0].data(), .y = sorted[1].data(), .z = sorted[2].data(), .u = sorted[3].data(), .v = sorted[4].data(),
+            .w = sorted[5].data(), .density = o[0].data(), .pressure = o[4].data(), .spans = spans.data(), .ax = o[1].data(),
+            .ay = o[2].data(), .az = o[3].data()};
+        bool const wide = avx2 && tafoni::detail::sph_has_avx2();
+        tafoni::detail::sph_densities(a, 0, n, TestType(0.3), wide);
+        tafoni::detail::sph_forces(a, 0, n, TestType(0.3), TestType(0.7), wide);
+        // And those of a plain loop, but for rounding.
+        for (std::size_t i = 0; i < n; i += 7) {
+            double rho = 0;
+            vec3 force{0, 0, 0};
+            for (std::size_t j = 0; j < n; ++j) {
+                auto const difference = [&](std::size_t d) { return static_cast<double>(sorted[d][i]) - static_cast<double>(sorted[d][j]); };
+                vec3 const d{difference(0), difference(1), difference(2)};
+                vec3 const v{difference(3), difference(4), difference(5)};
+                double const q = length(d);
+                if (q >= 2) continue;
+                rho += q < 1 ? 1 - 1.5 * q * q + 0.75 * q * q * q : 0.25 * (2 - q) * (2 - q) * (2 - q);
+                if (i == j) continue;
+                double const slope = q < 1 ? -3 * q + 2.25 * q * q : -0.75 * (2 - q) * (2 - q);
+                double const both = static_cast<double>(o[0][i]) + static_cast<double>(o[0][j]);
+                double const p = static_cast<double>(o[4][i]) + static_cast<double>(o[4][j]) - 0.7 * dot(d, v) / (both * (q * q + 0.01));
+                force += -0.3 * p * slope / q * d;
+            }
+            double const precise = sizeof(TestType) == 8 ? 1e-12 : 1e-4;
+            CHECK(static_cast<double>(o[0][i]) == Approx(0.3 * rho).epsilon(precise));
+            for (std::size_t d = 0; d < 3; ++d) {
+                CHECK(static_cast<double>(o[1 + d][i]) == Approx(force[static_cast<int>(d)]).margin(precise * 100));
+            }
+        }
+    }
+    CHECK(out[0] == out[1]);
+}
+
+TEMPLATE_TEST_CASE("a pool in a tub settles and stays", "", float, double) {
+    double const s = 0.1;
+    triangle_surface const walls_of = tub(0.6, 3);
+    sph_options const o{.particles = 216, .spacing = s, .damping = 0.3};
+    sph<TestType> f({.box = between(vec3{0.05, 0.05, 0.05}, vec3{0.55, 0.55, 0.55})}, everywhere(), o);
+    mesh_boundary const walls(walls_of.positions, walls_of.triangles, f.reach());
+    double t = 0;
+    while (t < 3) t += f.step(walls, inline_executor{});
+    REQUIRE(f.particle_count() == 216);
+    auto const middle = [&] {
+        vec3 sum{0, 0, 0};
+        for (std::size_t i = 0; i < f.particle_count(); ++i) sum += f.position(i);
+        return vec3{sum / static_cast<double>(f.particle_count())};
+    };
+    vec3 const before = middle();
+    while (t < 4) t += f.step(walls, inline_executor{});
+    vec3 const after = middle();
+    double fastest = 0;
+    box3 wet;
+    for (std::size_t i = 0; i < f.particle_count(); ++i) {
+        fastest = std::max(fastest, length(f.velocity(i)));
+        wet.include(f.position(i));
+    }
+    CHECK(length(after - before) < 0.02 * s);
+    CHECK(fastest < 0.01 * f.sound_speed());
+    CHECK(wet.lo.minCoeff() > -0.5 * s);
+    CHECK(wet.hi[0] < 0.6 + 0.5 * s);
+    CHECK(wet.hi[1] < 0.6 + 0.5 * s);
+    CHECK(wet.hi[2] < 0.9);
+    CHECK(wet.hi[2] > 0.35);
+}
+
+TEMPLATE_TEST_CASE("a particle alone falls as the parabola says, to the centre where that is asked", "", float, double) {
+    auto f = placed<TestType>({{.id = 0, .position = vec3{0, 0, 100}, .velocity = vec3{3, 0, 0}}},
+                              {.spacing = 0.1, .gravity = vec3{0, 0, -10}, .largest_step = 0.001});
+    double t = 0;
+    while (t < 2) t += f.step(open_space{}, inline_executor{});
+    CHECK(f.velocity(0)[2] == Approx(-10 * t).epsilon(1e-3));
+    CHECK(f.position(0)[2] == Approx(100 - 5 * t * t).epsilon(1e-3));
+    CHECK(f.position(0)[0] == Approx(3 * t).epsilon(1e-3));
+    auto g = placed<TestType>({{.id = 0, .position = vec3{3, 4, 0}}}, {.spacing = 0.1, .gravity = vec3{0, 0, 0}, .centre = vec3{0, 0, 0}, .toward = 5});
+    double const dt = g.step(open_space{}, inline_executor{});
+    CHECK(g.velocity(0)[0] == Approx(-3 * dt));
+    CHECK(g.velocity(0)[1] == Approx(-4 * dt));
+}
+
+TEMPLATE_TEST_CASE("a wall pushes by the stiffness times the penetration less the damping", "", float, double) {
+    triangle_surface const ground{.positions = {vec3{-9, -9, 0}, vec3{9, -9, 0}, vec3{0, 9, 0}}, .triangles = {{0, 1, 2}}};
+    auto f = placed<TestType>({{.id = 0, .position = vec3{0, 0, 0.3}, .velocity = vec3{1, 0, -2}}},
+                              {.spacing = 1, .sound_speed = 10, .reach = 0.8, .wall_stiffness = 60, .wall_damping = 7, .gravity = vec3{0, 0, -4}});
+    mesh_boundary const walls(ground.positions, ground.triangles, f.reach());
+    double const dt = f.step(walls, inline_executor{});
+    CHECK(f.velocity(0)[2] == Approx(-2 + dt * (60 * 0.5 + 7 * 2 - 4)).epsilon(1e-6));
+    CHECK(f.velocity(0)[0] == Approx(1));
+    CHECK(f.position(0)[2] == Approx(0.3 + dt * f.velocity(0)[2]).epsilon(1e-6));
+}
+
+TEMPLATE_TEST_CASE("the step keeps to its limits", "", float, double) {
+    sph_options const o{.spacing = 0.5, .sound_speed = 40, .damping = 0, .gravity = vec3{0, 0, 0}, .courant = 0.25};
+    auto at_rest = placed<TestType>({{.id = 0}}, o);
+    CHECK(at_rest.step(open_space{}, inline_executor{}) == Approx(0.25 * 0.5 / 40));
+    auto fast = placed<TestType>({{.id = 0, .velocity = vec3{0, 960, 0}}}, o);
+    CHECK(fast.step(open_space{}, inline_executor{}) == Approx(0.25 * 0.5 / 1000));
+    auto thick = o;
+    thick.viscosity = 100;
+    CHECK(placed<TestType>({{.id = 0}}, thick).step(open_space{}, inline_executor{}) == Approx(0.25 * 0.25 / 400));
+    auto short_step = o;
+    short_step.largest_step = 1e-6;
+    CHECK(placed<TestType>({{.id = 0}}, short_step).step(open_space{}, inline_executor{}) == 1e-6);
+}
+
+TEMPLATE_TEST_CASE("emitters keep to the spacing and the number, and sinks make room", "", float, double) {
+    sph_options const o{.particles = 60, .spacing = 1};
+    sph<TestType> f({.box = between(vec3{0, 0, 10}, vec3{3, 3, 11}), .velocity = vec3{0, 0, -5}},
+                    {.keep = between(vec3{-5, -5, 0}, vec3{8, 8, 20})}, o);
+    CHECK(f.particle_count() == 0);
+    double closest = 1e9;
+    std::uint64_t last = 0;
+    for (int k = 0; k < 1500; ++k) {
+        f.step(open_space{}, inline_executor{});
+        REQUIRE(f.particle_count() <= 60);
+        if (k == 0) CHECK(f.particle_count() == 32);
+        for (std::size_t i = 0; i < f.particle_count(); ++i) {
+            REQUIRE(f.position(i)[2] >= 0);
+            if (i > 0) REQUIRE(f.id(i - 1) < f.id(i));
+            for (std::size_t j = 0; j < i; ++j) closest = std::min(closest, length(f.position(i) - f.position(j)));
+            last = std::max(last, f.id(i));
+        }
+    }
+    CHECK(closest > 0.8);
+    CHECK(last > 150);
+}
+
+TEST_CASE("threads change no bit of a fluid", "[threads]") {
+    triangle_surface const walls_of = tub(14, 60);
+    auto const poured = [&](auto const& threads) {
+        sph<float> f({.box = between(vec3{1, 1, 1}, vec3{9, 13, 30})}, everywhere(), {.particles = 3500, .spacing = 1});
+        mesh_boundary const walls(walls_of.positions, walls_of.triangles, f.reach());
+        for (int k = 0; k < 12; ++k) f.step(walls, threads);
+        return state(f);
+    };
+    auto const one = poured(inline_executor{});
+    for (std::size_t n : {2U, 3U, 7U}) CHECK(one == poured(thread_pool(n)));
+}
+
+TEMPLATE_TEST_CASE("no particles, one point for all, and far too many near each other", "", float, double) {
+    sph<TestType> none(std::vector<box_emitter>{}, everywhere(), {.particles = 0});
+    CHECK(none.step(open_space{}, inline_executor{}) == none.options().largest_step);
+    CHECK(none.particle_count() == 0);
+
+    std::vector<fluid_particle> all;
+    for (std::uint64_t k = 0; k < 1000; ++k) all.push_back({.id = k, .position = vec3{2, 3, 4}});
+    auto f = placed<TestType>(all, {});
+    for (int k = 0; k < 5; ++k) f.step(open_space{}, inline_executor{});
+    for (std::size_t i = 0; i < f.particle_count(); ++i) {
+        REQUIRE(is_finite(f.position(i)));
+        REQUIRE(f.velocity(i) == f.velocity(0));
+    }
+    for (std::uint64_t k = 1000; k < 1025; ++k) all.push_back({.id = k, .position = vec3{2, 3, 4}});
+    f.place(all);
+    auto const before = state(f);
+    CHECK_THROWS_WITH(f.step(open_space{}, inline_executor{}), Catch::Contains("within one cell"));
+    CHECK(state(f) == before);
+}
+
+TEST_CASE("what a fluid is told is checked by name") {
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    double const inf = std::numeric_limits<double>::infinity();
+    auto const refused = [&](sph_options const& o, char const* what) {
+        CHECK_THROWS_WITH(sph<float>(std::vector<box_emitter>{}, everywhere(), o), Catch::Contains(what));
+    };
+    refused({.particles = (1u << 24) + 1}, "particles");
+    for (double const bad : {0.0, -1.0, nan, inf}) refused({.spacing = bad}, "spacing");
+    for (double const bad : {0.0, -1.0, 2.0, nan}) refused({.smoothing = bad}, "smoothing");
+    for (double const bad : {-1.0, nan, inf}) {
+        refused({.sound_speed = bad}, "sound_speed");
+        refused({.viscosity = bad}, "viscosity");
+        refused({.damping = bad}, "damping");
+        refused({.reach = bad}, "reach");
+        refused({.wall_stiffness = bad}, "wall_stiffness");
+        refused({.wall_damping = bad}, "wall_damping");
+    }
+    for (double const bad : {nan, inf, -inf}) {
+        refused({.gravity = vec3{0, bad, 0}}, "gravity");
+        refused({.centre = vec3{bad, 0, 0}}, "centre");
+        refused({.toward = bad}, "toward");
+    }
+    for (double const bad : {0.0, -1.0, 0.6, nan}) refused({.courant = bad}, "courant");
+    for (double const bad : {0.0, -1.0, nan, inf}) refused({.largest_step = bad}, "largest_step");
+    refused({.gravity = vec3{0, 0, 0}}, "sound_speed");  // nothing that it could follow from
+    auto const box = between(vec3{0, 0, 0}, vec3{1e4, 1e4, 1});
+    CHECK_THROWS_WITH(sph<float>({.box = box}, everywhere()), Catch::Contains("places"));
+    CHECK_THROWS_AS(sph<float>({.box = between(vec3{1, 0, 0}, vec3{0, 1, 1})}, everywhere()), invalid_input);
+    sph<float> f(std::vector<box_emitter>{}, everywhere(), {.particles = 2});
+    CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>(3)), Catch::Contains("more particles"));
+    CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>(2)), Catch::Contains("twice"));
+    CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>{{.id = 0, .position = vec3{0, nan, 0}}}), Catch::Contains("not finite"));
+}
