@@ -10,6 +10,9 @@
 #include <tafoni/voxel/sparse_grid.hpp>
 #include <tafoni/voxel/voxel_surface.hpp>
 
+#include <functional>
+#include <string>
+
 using namespace tafoni;
 
 namespace {
@@ -24,6 +27,9 @@ struct faulty {
     std::vector<std::uint8_t> states = std::vector<std::uint8_t>(3 * 4 * 5, 1);
 };
 
+/// Without bytes, and with one voxel of no state.
+struct strange {};
+
 template <class F>
 errc code_of(F const& f) {
     try {
@@ -35,6 +41,16 @@ errc code_of(F const& f) {
 }
 
 }  // namespace
+
+template <>
+struct tafoni::grid_access<strange> {
+    static std::array<std::size_t, 3> size(strange const&) { return {3, 4, 5}; }
+    static vec3 spacing(strange const&) { return vec3{1, 1, 1}; }
+    static vec3 origin(strange const&) { return vec3{0, 0, 0}; }
+    static voxel_state state(strange const&, std::size_t i, std::size_t j, std::size_t k) {
+        return static_cast<voxel_state>(i == 2 && j == 1 && k == 3 ? 3 : 1);
+    }
+};
 
 template <>
 struct tafoni::grid_access<faulty> {
@@ -153,5 +169,32 @@ TEST_CASE("copying between grids of different sizes is refused and changes nothi
         copy_states(from, turned);
     } catch (invalid_input const& e) {
         CHECK(std::string(e.what()) == "copy_states: got a grid of 3 x 4 x 5 voxels for one of 5 x 4 x 3");
+    }
+}
+
+TEST_CASE("a grid that answers what is no state, or bytes for other voxels, is refused with the voxel and nothing is copied", "[V6]") {
+    faulty const lying{fault::lying_bytes};
+    for (auto const up : {up_axis::plus_z, up_axis::minus_x, up_axis::plus_y}) {
+        CHECK(code_of([&] { (void)sparse_grid::copy_of(lying, up); }) == errc::attribute_length);
+        sparse_grid to({.size = {3, 4, 5}}, up);
+        CHECK(code_of([&] { copy_states(lying, to); }) == errc::attribute_length);
+        CHECK(to.count(voxel_plane::solid) == 0);
+    }
+    // Bytes are read where they are offered.
+    faulty bad{fault::none};
+    bad.states[2 + 3 * (1 + 4 * 3)] = 3;
+    dense_grid dense({.size = {3, 4, 5}});
+    for (auto const& call : {std::function<void()>([&] { (void)sparse_grid::copy_of(bad); }),
+                             std::function<void()>([&] { (void)sparse_grid::copy_of(bad, up_axis::minus_x); }),
+                             std::function<void()>([&] { copy_states(bad, dense); }),
+                             std::function<void()>([&] { (void)sparse_grid::copy_of(strange{}, up_axis::plus_y); }),
+                             std::function<void()>([&] { copy_states(strange{}, dense); })}) {
+        try {
+            call();
+            FAIL("accepted");
+        } catch (invalid_input const& e) {
+            CHECK(e.code() == errc::out_of_range);
+            CHECK(std::string(e.what()).find("(2, 1, 3): got 3") != std::string::npos);
+        }
     }
 }

@@ -25,7 +25,7 @@ enum class voxel_state : std::uint8_t { air = 0, rock = 1, colluvium = 2 };
 /// To be written as well:
 ///   void set(G&, std::size_t i, std::size_t j, std::size_t k, voxel_state);
 /// Where the states lie as bytes side by side, x fastest (optional; copies are then several times faster):
-///   std::span<std::uint8_t const> bytes(G const&);   // 0 air, 1 rock, 2 colluvium, nothing else
+///   std::span<std::uint8_t const> bytes(G const&);   // one per voxel: 0 air, 1 rock, 2 colluvium, nothing else
 template <class G>
 struct grid_access;
 

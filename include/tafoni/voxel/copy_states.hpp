@@ -9,6 +9,7 @@
 #include <tafoni/voxel/sparse_grid.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 namespace tafoni {
@@ -19,7 +20,8 @@ struct copy_states_fn {
     /// Afterwards `to` answers what `from` does, voxel by voxel in the axes of both users; spacing, origin,
     /// border and up axis of `to` stay as they are. Brings the result of a run back into a grid of one's own.
     /// O(voxels); quickest from and to a `sparse_grid`.
-    /// \throws invalid_input  `attribute_length` when the sizes differ; nothing is changed then.
+    /// \throws invalid_input  `attribute_length` when the sizes differ; nothing is changed then. Also `out_of_range`
+    ///         where `from` answers a state that is none; what comes before is copied then.
     template <voxel_grid From, editable_voxel_grid To>
     void operator()(From const& from, To& to) const {
         auto const n = grid_access<From>::size(from);
@@ -44,7 +46,9 @@ struct copy_states_fn {
             for (std::size_t k = 0; k < n[2]; ++k) {
                 for (std::size_t j = 0; j < n[1]; ++j) {
                     for (std::size_t i = 0; i < n[0]; ++i) {
-                        grid_access<To>::set(to, i, j, k, grid_access<From>::state(from, i, j, k));
+                        voxel_state const s = grid_access<From>::state(from, i, j, k);
+                        require_state(static_cast<std::uint8_t>(s), i, j, k);
+                        grid_access<To>::set(to, i, j, k, s);
                     }
                 }
             }

@@ -54,7 +54,8 @@ public:
         table_.assign(bricks, all_air);
     }
 
-    /// A copy of any grid. O(voxels).
+    /// A copy of any grid. O(voxels). \throws invalid_input  also `out_of_range` where the grid answers a state that
+    /// is none, `attribute_length` where its `bytes` are not one per voxel.
     template <voxel_grid G>
     static sparse_grid copy_of(G const& grid, up_axis up = up_axis::plus_z, grid_border const& border = {}) {
         using access = grid_access<G>;

@@ -4,6 +4,7 @@
 #define TAFONI_VOXEL_DETAIL_BRICK_ROWS_HPP
 
 #include <tafoni/voxel/concepts.hpp>
+#include <tafoni/voxel/detail/grid_checks.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace tafoni::detail {
@@ -100,7 +102,21 @@ void put_row(Brick& brick, brick_rows const& rows, brick_rows::row const& r, bri
     }
 }
 
+/// Names the first voxel of a row whose state is none, where there is one.
+inline void require_row(brick_rows const& rows, brick_rows::row const& r, brick_rows::states const& states) {
+    std::uint64_t wrong = 0;  // eight bytes at once: a bit beyond the second, or both
+    for (std::size_t t = 0; t < states.size(); t += 8) {
+        std::uint64_t eight = 0;
+        std::memcpy(&eight, states.data() + t, 8);
+        wrong |= (eight & 0xFCFCFCFCFCFCFCFCU) | (eight & eight >> 1 & 0x0101010101010101U);
+    }
+    if (wrong == 0) return;
+    std::size_t const n = rows.length();
+    for (std::size_t i = 0; i < n; ++i) require_state(states[rows.mirrored() ? n - 1 - i : i], r.user[0] + i, r.user[1], r.user[2]);
+}
+
 /// Fills a brick of nothing but air from any grid. O(32^3).
+/// \throws invalid_input  `attribute_length` for `bytes` of another length, `out_of_range` for a state that is none.
 template <class G, class Brick>
 void read_brick(G const& grid, brick_rows const& rows, Brick& out) {
     using access = grid_access<G>;
@@ -109,6 +125,7 @@ void read_brick(G const& grid, brick_rows const& rows, Brick& out) {
     if constexpr (grid_of_bytes<G>) {
         std::span<std::uint8_t const> const bytes = access::bytes(grid);
         auto const size = access::size(grid);
+        require_bytes(size, bytes);
         rows.for_each([&](brick_rows::row const& r) {
             std::uint8_t const* const first = bytes.data() + (r.user[0] + size[0] * (r.user[1] + size[1] * r.user[2]));
             if (rows.mirrored()) {
@@ -116,6 +133,7 @@ void read_brick(G const& grid, brick_rows const& rows, Brick& out) {
             } else {
                 std::copy(first, first + n, states.begin());
             }
+            require_row(rows, r, states);
             put_row(out, rows, r, states);
         });
     } else {
@@ -124,6 +142,7 @@ void read_brick(G const& grid, brick_rows const& rows, Brick& out) {
                 voxel_state const s = access::state(grid, r.user[0] + i, r.user[1], r.user[2]);
                 states[rows.mirrored() ? n - 1 - i : i] = static_cast<std::uint8_t>(s);
             }
+            require_row(rows, r, states);
             put_row(out, rows, r, states);
         });
     }

@@ -69,6 +69,24 @@ inline void require_states(char const* who, grid_frame const& frame, std::span<s
                         {.kind = entity::voxel, .index = at, .value = static_cast<double>(*wrong), .limit = 2});
 }
 
+/// Bytes that a grid offers for its states. O(1). \throws invalid_input  `attribute_length`
+inline void require_bytes(std::array<std::size_t, 3> const& n, std::span<std::uint8_t const> bytes) {
+    std::size_t const voxels = n[0] * n[1] * n[2];
+    if (bytes.size() == voxels) return;
+    fail<invalid_input>(errc::attribute_length,
+                        "grid_access::bytes: got " + std::to_string(bytes.size()) + " bytes for " + size_text(n) + " voxels",
+                        {.kind = entity::voxel, .value = static_cast<double>(bytes.size()),
+                         .limit = static_cast<double>(voxels)});
+}
+
+/// For a state that a grid answered. \throws invalid_input  `out_of_range`
+inline void require_state(std::uint8_t state, std::size_t i, std::size_t j, std::size_t k) {
+    if (state <= 2) return;
+    fail<invalid_input>(errc::out_of_range,
+                        "grid_access: state of voxel " + voxel_text(i, j, k) + ": got " + std::to_string(state) + ", at most 2",
+                        {.kind = entity::voxel, .value = static_cast<double>(state), .limit = 2});
+}
+
 /// \throws invalid_input  `attribute_length`
 inline void require_same_size(char const* who, std::array<std::size_t, 3> const& from,
                               std::array<std::size_t, 3> const& to) {
