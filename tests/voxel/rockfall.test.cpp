@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -474,6 +476,16 @@ TEST_CASE("ground is where the options say", "[rockfall]") {
           std::vector<voxel>{{4, 4, 8}});
     CHECK(left(all_rock, no_ground) == std::vector<voxel>{{4, 4, 0}});
     CHECK(left({}, {.ground_voxels = {{4, 4, 4}, {5, 5, 5}, {-1, 0, 99}}}) == std::vector<voxel>{{4, 4, 4}});
+    // Named voxels may lie as far away as numbers go, also along an axis that is turned round.
+    constexpr auto least = std::numeric_limits<std::int32_t>::min();
+    constexpr auto most = std::numeric_limits<std::int32_t>::max();
+    for (auto const up : {up_axis::minus_x, up_axis::minus_y, up_axis::minus_z}) {
+        sparse_grid turned({.size = {3, 4, 5}}, up);
+        turned.set({1, 1, 1}, voxel_state::rock);
+        std::vector<voxel_change> changes;
+        rockfall far_ground({.ground_voxels = {{least, least, least}, {most, most, most}, {0, least, most}}});
+        CHECK(far_ground.fall(turned, {}, 0, inline_executor{}, changes).empty());
+    }
     CHECK(left(two, {.ground_where = [](vec3 const& p) { return p[1] > 7; }}) ==
           std::vector<voxel>{{4, 4, 0}, {0, 4, 4}, {4, 8, 4}});
 }

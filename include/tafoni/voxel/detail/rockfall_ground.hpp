@@ -43,8 +43,8 @@ public:
             });
         }
         for (voxel const u : options.ground_voxels) {
+            if (!grid.user_frame().contains(u)) continue;
             voxel const v = grid.from_user(u);
-            if (!grid.contains(v)) continue;
             if (table_.empty()) table_.assign(grid.brick_count(), 0);
             std::size_t const b = grid.brick_of(v);
             name_brick(b);
