@@ -114,6 +114,24 @@ TEST_CASE("a revolved silhouette keeps its width in every row and all its symmet
     }
 }
 
+TEST_CASE("a silhouette of any scale is the same voxels, and voxels need not be cubes") {
+    gray_image image{.width = 8, .height = 4, .pixels = std::vector<std::uint8_t>(32, 255)};
+    for (std::size_t row = 0; row < 4; ++row) {
+        for (std::size_t column = 1 + row % 2; column < 6; ++column) image.pixels[8 * row + column] = 0;
+    }
+    for (auto const sweep : {image_sweep::along_y, image_sweep::around_middle, image_sweep::around_left_edge}) {
+        plain_grid unit(frame_for_image(image, {.sweep = sweep}));
+        fill_from_image(unit, image, {.sweep = sweep});
+        for (double const h : {1e-300, 1e-160, 1e99}) {
+            grid_frame frame = unit.frame;
+            frame.spacing = vec3{h, h, 7 * h};
+            plain_grid scaled(frame);
+            fill_from_image(scaled, image, {.sweep = sweep});
+            REQUIRE(differences(scaled, unit) == 0);
+        }
+    }
+}
+
 TEST_CASE("images and options that make no column are refused, and the grid is as it was") {
     sparse_grid grid({.size = {3, 3, 3}});
     grid.set({0, 0, 0}, voxel_state::rock);

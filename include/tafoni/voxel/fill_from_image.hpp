@@ -94,8 +94,9 @@ struct fill_from_image_fn {
         }
         double const wide = static_cast<double>(frame.size[0] - 2 * pad);
         double const tall = static_cast<double>(frame.size[2] - pad);
-        // Pixels per length along x; revolved about the axis, y is measured alike.
-        double const per_x = pixels.width / (wide * frame.spacing[0]);
+        // Pixels per voxel; revolved about the axis, lengths along y are measured as along x.
+        double const per_x = pixels.width / wide;
+        double const per_y = per_x * std::min(frame.spacing[1] / frame.spacing[0], 1e100);
         double const middle_x = 0.5 * static_cast<double>(frame.size[0]);
         double const middle_y = 0.5 * static_cast<double>(frame.size[1]);
         auto const dark = [&](double column, std::size_t row) {
@@ -107,14 +108,14 @@ struct fill_from_image_fn {
             if (z >= frame.size[2] - pad) return false;
             double const above = std::floor((static_cast<double>(v.z) + 0.5) * (pixels.height / tall));
             std::size_t const row = image.height - 1 - std::min(static_cast<std::size_t>(above), image.height - 1);
-            double const x = (static_cast<double>(v.x) + 0.5 - middle_x) * frame.spacing[0];
-            double const y = (static_cast<double>(v.y) + 0.5 - middle_y) * frame.spacing[1];
+            double const x = (static_cast<double>(v.x) + 0.5 - middle_x) * per_x;
+            double const y = (static_cast<double>(v.y) + 0.5 - middle_y) * per_y;
             double const half = 0.5 * pixels.width;
             if (options.sweep == image_sweep::along_y) {
                 bool const inside = static_cast<std::size_t>(v.y) >= pad && static_cast<std::size_t>(v.y) < frame.size[1] - pad;
-                return inside && dark(std::floor(half + x * per_x), row);
+                return inside && dark(std::floor(half + x), row);
             }
-            double const r = std::sqrt(x * x + y * y) * per_x;
+            double const r = std::sqrt(x * x + y * y);
             if (options.sweep == image_sweep::around_left_edge) return dark(std::floor(r), row);
             double const column = std::floor(half + r);
             return dark(column, row) || dark(pixels.width - 1 - column, row);
