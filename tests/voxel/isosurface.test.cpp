@@ -177,7 +177,7 @@ TEST_CASE("rows longer than a word of bits are closed and right", "[voxel][isosu
     }
 }
 
-TEST_CASE("spheres and tori converge with order two in volume and area", "[voxel][isosurface]") {
+TEST_CASE("law 27: spheres and tori converge with order two in volume and area", "[voxel][isosurface]") {
     double const pi = 3.14159265358979323846;
     struct ball {
         double operator()(vec3 const& p) const { return 1 - length(p); }
@@ -188,19 +188,27 @@ TEST_CASE("spheres and tori converge with order two in volume and area", "[voxel
             return 0.3 - std::sqrt(r * r + p[2] * p[2]);
         }
     };
+    // How the area's error falls on single grids hangs on where their nodes lie: the mean over four places tells the order.
     auto const errors = [&](auto const& f, std::size_t n, double v, double a) {
         double const h = 2.6 / static_cast<double>(n);
-        grid_frame const frame{.size = {n, n, n}, .spacing = vec3{h, h, h}, .origin = vec3{-1.3 + 0.013, -1.3 - 0.021, -1.3 + 0.007}};
-        auto const m = isosurface(f, frame, 0.0);
-        return std::array<double, 2>{std::fabs(volume(m) - v) / v, std::fabs(area(m) - a) / a};
+        std::array<double, 2> mean{};
+        for (int place = 0; place < 4; ++place) {
+            double const o = h * (place + 0.5) / 4;
+            grid_frame const frame{.size = {n, n, n}, .spacing = vec3{h, h, h},
+                                   .origin = vec3{-1.3 + 0.3 * o, -1.3 - 0.21 * o, -1.3 + 0.37 * o}};
+            auto const m = isosurface(f, frame, 0.0);
+            mean[0] += std::fabs(volume(m) - v) / v / 4;
+            mean[1] += std::fabs(area(m) - a) / a / 4;
+        }
+        return mean;
     };
     auto const slopes = [&](auto const& f, double v, double a) {
         auto const coarse = errors(f, 16, v, a);
         auto const fine = errors(f, 64, v, a);
-        REQUIRE(std::log2(coarse[0] / fine[0]) / 2 == Approx(2.0).margin(0.2));
-        REQUIRE(std::log2(coarse[1] / fine[1]) / 2 == Approx(2.0).margin(0.35));
-        REQUIRE(fine[0] < 0.005);
-        REQUIRE(fine[1] < 0.005);
+        for (std::size_t what = 0; what < 2; ++what) {
+            REQUIRE(std::log2(coarse[what] / fine[what]) / 2 == Approx(2.0).margin(0.1));
+            REQUIRE(fine[what] < 0.005);
+        }
     };
     slopes(ball{}, 4 * pi / 3, 4 * pi);
     slopes(ring{}, 2 * pi * pi * 0.7 * 0.09, 4 * pi * pi * 0.7 * 0.3);

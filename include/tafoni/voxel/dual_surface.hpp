@@ -166,14 +166,16 @@ struct dual_surface_fn {
     /// else gradients are differences over 1/1000 of a voxel. Vertices lie within one
     /// step of their cell, and never beyond the outermost nodes. O(nodes) calls of the
     /// field and about 20 more per crossed edge; memory: the surface and two planes.
-    /// \throws invalid_input  as `grid_frame::validate`; the lowest sample that is not finite.
+    /// \throws invalid_input  as `grid_frame::validate`; `bad_parameter` for an `iso` beyond 1e300 and for the lowest
+    ///         sample that is not finite, by its index and place; `size_overflow`.
     template <scalar_field F>
     [[nodiscard]] indexed_mesh operator()(F const& field, grid_frame const& nodes, double iso,
                                           dual_surface_options const& options = {}) const {
         nodes.validate();
         require_range("dual_surface: iso", iso, -1e300, 1e300);
         require_indexable("dual_surface: nodes of a plane", 8 * (nodes.size[0] + 2) * (nodes.size[1] + 2));
-        node_lattice const at{.size = nodes.size, .origin = nodes.centre({0, 0, 0}), .spacing = nodes.spacing, .pad = 1};
+        node_lattice const at{.size = nodes.size, .origin = nodes.centre({0, 0, 0}), .spacing = nodes.spacing, .pad = 1,
+                              .who = "dual_surface"};
         auto const plane = [&](std::size_t k, std::vector<double>& buffer) {
             buffer.clear();
             for (std::size_t j = 0; j < at.size[1]; ++j) {

@@ -25,6 +25,7 @@ struct node_lattice {
     vec3 origin{0, 0, 0};  ///< of node (0, 0, 0)
     vec3 spacing{1, 1, 1};
     std::size_t pad = 1;  ///< 1: closed by nodes beyond every side that are never inside; 0: open
+    char const* who = "isosurface";  ///< in messages
 
     [[nodiscard]] std::size_t nodes(std::size_t axis) const noexcept { return size[axis] + 2 * pad; }
     [[nodiscard]] std::size_t layers() const noexcept { return nodes(2) - 1; }
@@ -114,7 +115,7 @@ private:
         while (std::isfinite(static_cast<double>(samples[n]))) ++n;
         std::size_t const index = n + at_.size[0] * at_.size[1] * k;
         fail<invalid_input>(errc::bad_parameter,
-                            "isosurface: sample " + std::to_string(index) + " at (" + std::to_string(n % at_.size[0]) + ", " +
+                            std::string(at_.who) + ": sample " + std::to_string(index) + " at (" + std::to_string(n % at_.size[0]) + ", " +
                                 std::to_string(n / at_.size[0]) + ", " + std::to_string(k) + ") is not finite",
                             {.kind = entity::voxel, .index = index, .value = static_cast<double>(samples[n])});
     }
@@ -191,7 +192,7 @@ private:
     /// A layer adds fewer than 2^31 vertices where a plane has fewer than 2^29 nodes; asked once per step.
     void require_countable() const {
         if (count_ > 0x80000000U || out_.corners.size() > 0xC0000000U) {
-            fail<invalid_input>(errc::size_overflow, "isosurface: more than 2^31 vertices");
+            fail<invalid_input>(errc::size_overflow, std::string(at_.who) + ": more than 2^31 vertices");
         }
     }
 
