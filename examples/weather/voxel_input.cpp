@@ -203,23 +203,24 @@ void load_solid(voxel_source& source, voxel_arguments const& a, solid&& body) {
     voxelise_by(source, a, [body = std::make_shared<solid const>(std::move(body))](sparse_grid& grid) { fill_from_solid(grid, *body); });
 }
 
-/// A solid, or a surface with holes, which is filled by its winding number and told with their count.
+/// A solid; or a surface with holes or with edges of many faces, which is filled by its winding number, and told.
 void load_mesh(voxel_source& source, voxel_arguments const& a) {
     auto const file = std::make_shared<mesh_file const>(read_mesh(std::filesystem::path(a.input)));
     try {
         repaired_solid r = repair_solid(file->mesh, {.orient = true});
-        source.repaired = {{"turned_faces", r.report.turned_faces.size()}, {"holes", 0}};
+        source.repaired["turned_faces"] = r.report.turned_faces.size();
         load_solid(source, a, std::move(r.body));
         return;
     } catch (bad_topology const& e) {
-        if (e.code() != errc::not_closed) throw;
+        constexpr std::array filled{errc::not_closed, errc::nonmanifold_edge, errc::nonmanifold_vertex, errc::duplicate_face};
+        if (std::find(filled.begin(), filled.end(), e.code()) == filled.end()) throw;
     }
     sparse_grid probe(grid_frame{.size = {1, 1, 1}});
     mesh_fill_report const report = fill_from_mesh(probe, file->mesh);
     if (!(report.volume > 0)) {
         detail::fail<bad_topology>(errc::zero_volume, a.input + ": the surface encloses no volume", {.kind = entity::file, .file = a.input});
     }
-    source.repaired = {{"turned_faces", 0}, {"holes", report.holes}, {"open_edges", report.boundary_edges}};
+    source.repaired = {{"turned_faces", 0}, {"holes", report.holes}, {"open_edges", report.boundary_edges}, {"filled_by_winding_number", 1}};
     for (vec3 const& p : file->mesh.positions) source.bounds.include(p);
     voxelise_by(source, a, [file](sparse_grid& grid) { fill_from_mesh(grid, file->mesh); });
 }
@@ -239,7 +240,7 @@ voxel_source load_voxels(voxel_arguments const& a) {
     voxel_source source;
     source.up = axis_of(a.up);
     source.up_direction = up_rotation::of(source.up).direction_to_user({0, 0, 1});
-    source.repaired = {{"turned_faces", 0}};
+    source.repaired = {{"turned_faces", 0}, {"holes", 0}, {"open_edges", 0}, {"filled_by_winding_number", 0}};
     std::string const kind = extension_of(a.input);
     source.border = !a.border.empty() ? a.border : kind == "asc" || a.input.rfind("builtin:cliff", 0) == 0 ? "extend" : "ground";
     if (a.input.rfind("builtin:", 0) == 0 && a.input.rfind("builtin:outcrop", 0) != 0) {
@@ -254,7 +255,6 @@ voxel_source load_voxels(voxel_arguments const& a) {
         load_vox(source, a);
     } else if (kind.empty() || !is_mesh_name(a.input)) {
         rock_input rock = load_rock(a.input, a.seed);
-        source.repaired = std::move(rock.repaired);
         load_solid(source, a, std::move(rock.body));
     } else {
         load_mesh(source, a);
