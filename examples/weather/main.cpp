@@ -2,6 +2,7 @@
 // 0 (done), 1 (bad input), 2 (usage), 130 (stopped by Ctrl-C, resumable).
 #include "curvature_command.hpp"
 #include "frost_command.hpp"
+#include "hydraulic_command.hpp"
 #include "progress.hpp"
 #include "spec.hpp"
 #include "voxel_command.hpp"
@@ -32,6 +33,8 @@ int main(int argc, char** argv) {
     CLI::App* const voxel_command = weather::add_voxel_command(app, voxel);
     weather::curvature_arguments curvature;
     CLI::App* const curvature_command = weather::add_curvature_command(app, curvature);
+    weather::hydraulic_arguments hydraulic;
+    CLI::App* const hydraulic_command = weather::add_hydraulic_command(app, hydraulic);
     try {
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
@@ -42,6 +45,7 @@ int main(int argc, char** argv) {
         if (frost_command->parsed()) return weather::run_frost(frost) ? 0 : exit_interrupted;
         if (voxel_command->parsed()) return weather::run_voxel(voxel) ? 0 : exit_interrupted;
         if (curvature_command->parsed()) return weather::run_curvature(curvature) ? 0 : exit_interrupted;
+        if (hydraulic_command->parsed()) return weather::run_hydraulic(hydraulic) ? 0 : exit_interrupted;
     } catch (weather::usage_error const& e) {
         std::fprintf(stderr, "weather: %s\n", e.what());
         return exit_usage;

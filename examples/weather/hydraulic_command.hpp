@@ -1,0 +1,53 @@
+// weather hydraulic: running water wears a mesh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace weather {
+
+/// The command line of `weather hydraulic`. Values below 0, and empty texts, are chosen by the model's size.
+struct hydraulic_arguments {
+    std::string input;
+    std::string output;
+    std::string model = "partheniades";
+    std::string fluid = "rain";
+    std::uint32_t particles = 10000;
+    std::uint64_t iterations = 600;
+    std::string emitter;              ///< x0,y0,z0,x1,y1,z1
+    std::string velocity = "0,0,0";
+    std::string gravity;              ///< x,y,z
+    std::string up = "z";
+    double radius = -1;
+    double friction = -1;
+    double lifetime = -1;
+    double viscosity = -1;
+    std::string k;
+    std::string tau_c;
+    std::string a = "1";
+    std::string K = "1";
+    std::string m = "1";
+    double influence = -1;
+    double power = 1;
+    std::string estimator = "tensor";
+    std::string durability = "1";
+    double step = 10;
+    double refine = 0;
+    std::uint64_t seed = 1;
+    std::size_t threads = 1;
+    std::uint64_t snapshots = 0;
+    std::vector<std::string> formats{"vtp", "obj"};
+    std::string progress = "auto";
+};
+
+CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a);
+
+/// Runs it. False when Ctrl-C ended it early; what had been reached is written.
+bool run_hydraulic(hydraulic_arguments const& a);
+
+}  // namespace weather

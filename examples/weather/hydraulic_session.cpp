@@ -1,0 +1,282 @@
+#include "hydraulic_session.hpp"
+
+#include "field_choice.hpp"
+#include "spec.hpp"
+
+#include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/fluid/rain_particles.hpp>
+#include <tafoni/version.hpp>
+#include <tafoni/weathering/hydraulic_run.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace weather {
+
+using namespace tafoni;
+
+namespace {
+
+/// `x0,y0,z0,x1,y1,z1`.
+box3 parse_box(std::string const& option, std::string const& text) {
+    std::size_t comma = 0;
+    for (int n = 0; n < 3 && comma != std::string::npos; ++n) comma = text.find(',', comma + (n > 0 ? 1 : 0));
+    if (comma == std::string::npos) throw usage_error(option + " " + text + ": six numbers x0,y0,z0,x1,y1,z1 are needed");
+    box3 out{.lo = parse_vector(option, text.substr(0, comma)), .hi = parse_vector(option, text.substr(comma + 1))};
+    for (int d = 0; d < 3; ++d) {
+        if (!(out.lo[d] <= out.hi[d])) throw usage_error(option + " " + text + ": the box is empty");
+    }
+    return out;
+}
+
+int axis_of(vec3 const& up) {
+    int axis = 0;
+    for (int d = 1; d < 3; ++d) {
+        if (std::fabs(up[d]) > std::fabs(up[axis])) axis = d;
+    }
+    return axis;
+}
+
+/// The erosion of `base`, divided where rock is hard; what is laid down is not.
+struct hardened {
+    partheniades_erosion base{};
+    any_field durability = 1;
+
+    [[nodiscard]] double rate(wash_point const& at) const {
+        double const r = base.rate(at);
+        return r > 0 ? r / std::max(durability(at.position), 1e-3) : r;
+    }
+    void validate() const { base.validate(); }
+};
+static_assert(exchange_rule<hardened>);
+
+}  // namespace
+
+std::vector<std::string> hydraulic_fluids() { return {"rain"}; }
+
+hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
+    : a_(a), progress_(progress_style_of(a.progress)), threads_(a.threads), out_(a.output, a.formats, vec3{0, 0, 0}),
+      estimator_(parse_estimator(a.estimator)) {
+    // What cannot be read is told before the work begins.
+    static_cast<void>(up());
+    static_cast<void>(parse_vector("--velocity", a_.velocity));
+    if (!a_.emitter.empty()) static_cast<void>(parse_box("--emitter", a_.emitter));
+    water_settings w;
+    w.k = a_.k.empty() ? "1" : a_.k;
+    w.tau_c = a_.tau_c.empty() ? "1" : a_.tau_c;
+    static_cast<void>(make_fields({.lo = {0, 0, 0}, .hi = {1, 1, 1}}, w));
+}
+
+/// Against gravity, where it is given.
+vec3 hydraulic_session::up() const {
+    if (a_.gravity.empty()) return parse_up(a_.up);
+    vec3 const g = parse_vector("--gravity", a_.gravity);
+    if (!(length(g) > 0)) return parse_up(a_.up);
+    return vec3{normalized(g) * -1.0};
+}
+
+hydraulic_session::field_set hydraulic_session::make_fields(box3 const& bounds, water_settings const& w) const {
+    field_frame const frame{.bounds = bounds, .up = up(), .seed = a_.seed};
+    auto const field = [&](char const* option, std::string const& text, double least, double most) {
+        return make_field(option, text, least, most, frame);
+    };
+    return {.k = field("--k", w.k, 0, 1e100), .tau_c = field("--tau-c", w.tau_c, 0, 1e100), .a = field("--a", a_.a, 1e-6, 100),
+            .K = field("--K", a_.K, 0, 1e100), .m = field("--m", a_.m, 1e-6, 100),
+            .durability = field("--durability", a_.durability, 1e-3, 1e9)};
+}
+
+void hydraulic_session::settle() {
+    water_settings& w = water_;
+    double const size = input_.size;
+    double const edge = input_.mean_edge();
+    w.up = up();
+    w.gravity = a_.gravity.empty() ? vec3{w.up * (-10 * size)} : parse_vector("--gravity", a_.gravity);
+    double const g = length(w.gravity) > 0 ? length(w.gravity) : 10 * size;
+    double const fall = std::sqrt(size / g);   // s, about as long as a drop falls
+    double const speed = std::sqrt(size * g);  // about that at which it lands
+    w.radius = a_.radius > 0 ? a_.radius : edge;
+    w.friction = a_.friction >= 0 ? a_.friction : 0.8 / fall;
+    w.lifetime = a_.lifetime > 0 ? a_.lifetime : 15 * fall;
+    w.largest_step = 0.1 * fall;
+    w.viscosity = a_.viscosity >= 0 ? a_.viscosity : 0.02 * speed * w.radius;
+    double const stress = speed / edge;  // of water as thick as an edge at that speed
+    w.tau_c = a_.tau_c.empty() ? text_of(0.1 * stress) : a_.tau_c;
+    w.k = a_.k.empty() ? text_of(0.004 * size / (fall * stress)) : a_.k;
+    w.influence = a_.influence > 0 ? a_.influence : edge;
+    int const axis = axis_of(w.up);
+    bool const rises = w.up[axis] > 0;
+    box3 const& b = input_.bounds;
+    w.emitter.velocity = parse_vector("--velocity", a_.velocity);
+    if (a_.emitter.empty()) {
+        box3& box = w.emitter.box;
+        for (int d = 0; d < 3; ++d) {
+            double const inset = input_.terrain ? 2 * w.radius : 0.15 * b.extent()[d];
+            box.lo[d] = std::min(b.lo[d] + inset, 0.5 * (b.lo[d] + b.hi[d]));
+            box.hi[d] = std::max(b.hi[d] - inset, 0.5 * (b.lo[d] + b.hi[d]));
+        }
+        double const near_by = 2 * w.radius;
+        double const deep = 0.1 * size;
+        box.lo[axis] = rises ? b.hi[axis] + near_by : b.lo[axis] - near_by - deep;
+        box.hi[axis] = rises ? b.hi[axis] + near_by + deep : b.lo[axis] - near_by;
+    } else {
+        w.emitter.box = parse_box("--emitter", a_.emitter);
+    }
+    // Water that leaves the model's box sideways or below is gone; above it may splash.
+    box3& keep = w.sink.keep;
+    keep = b;
+    keep.include(w.emitter.box.lo);
+    keep.include(w.emitter.box.hi);
+    double const around = input_.terrain || input_.open_edges > 0 ? 0.5 * w.radius : 4 * w.radius;
+    for (int d = 0; d < 3; ++d) {
+        keep.lo[d] -= around + (d == axis && !rises ? 0.2 * size : 0.0);
+        keep.hi[d] += around + (d == axis && rises ? 0.2 * size : 0.0);
+    }
+}
+
+bool hydraulic_session::run() {
+    require_makable(a_.output);
+    stopwatch watch;
+    progress_.context().tick("read", 0);
+    input_ = load_surface(a_.input, a_.seed);
+    progress_.context().tick("read", 1);
+    settle();
+    seconds_["read"] = watch.lap();
+    field_set const fields = make_fields(input_.bounds, water_);
+    if (a_.model == "curvature") {
+        run_process(curvature_erosion<any_estimator>{.estimator = estimator_, .power = a_.power, .influence = water_.influence, .durability = fields.durability});
+    } else {
+        run_process(hardened{.base = {.coefficient = fields.k, .critical = fields.tau_c, .exponent = fields.a, .consistency = fields.K, .power = fields.m},
+                             .durability = fields.durability});
+    }
+    return !stopped_;
+}
+
+template <class Process>
+void hydraulic_session::run_process(Process const& process) {
+    hydraulic_options const options{.step_divisor = a_.step, .refine_length = a_.refine};
+    rain_particles const rain(water_.emitter, water_.sink,
+                              {.particles = a_.particles, .radius = water_.radius, .gravity = water_.gravity, .friction = water_.friction,
+                               .largest_step = water_.largest_step, .lifetime = water_.lifetime, .seed = a_.seed});
+    hydraulic_run run(input_.surface, rain, process, options);
+    run_with(run);
+}
+
+template <class Run>
+void hydraulic_session::run_with(Run& run) {
+    // Made only now that the input has been accepted, so that a refused run leaves nothing behind.
+    std::filesystem::path const folder = made_folder(a_.output);
+    vec3 origin{0, 0, 0};
+    for (int k = 0; k < 3; ++k) origin[k] = std::floor(input_.bounds.lo[k]);
+    out_ = output_folder(folder, a_.formats, origin);
+    if (a_.snapshots > 0) made_folder((folder / "snapshots").string());
+    out_.remove_old("hydraulic", [](std::uint64_t) { return false; });
+    stopwatch watch;
+    weather(run);
+    seconds_["weather"] = watch.lap() - aside_;
+    progress_.show("write", 0);
+    add_history(run);
+    out_.write("weathered", surface(run));
+    history_.write(out_);
+    if (a_.snapshots > 0) series_.finish(out_);
+    progress_.show("write", 1);
+    seconds_["write"] = watch.lap() + aside_;
+    write_report(run);
+    hydraulic_report const& r = run.report();
+    std::fprintf(stderr, "%s: %llu iterations, %.4g s of flow, %llu contacts, eroded %.4g, deposited %.4g, carried %.4g, left %.4g\n", a_.output.c_str(),
+                 static_cast<unsigned long long>(r.iterations), r.time, static_cast<unsigned long long>(r.contacts), r.ledger.eroded,
+                 r.ledger.deposited, r.ledger.carried, r.ledger.left);
+}
+
+template <class Run>
+void hydraulic_session::weather(Run& run) {
+    // About 50 rows of history; the run is cut there, which changes nothing.
+    std::uint64_t const row = std::max<std::uint64_t>(1, (a_.iterations + 49) / 50);
+    std::uint64_t done = 0;
+    run_context const context{.on_progress = [&](progress_event const&) {
+        std::uint64_t const n = run.report().iterations;
+        double const share = a_.iterations == 0 ? 1 : static_cast<double>(n) / static_cast<double>(a_.iterations);
+        return progress_.show("weather", share, std::to_string(n) + " iterations");
+    }};
+    for (;;) {
+        stopwatch watch;
+        if (done % row == 0) {
+            static_cast<void>(run.run(0));  // brings the report up to date
+            add_history(run);
+        }
+        if (a_.snapshots > 0 && done % a_.snapshots == 0) {
+            series_.write(out_, done, surface(run));
+            history_.write(out_);
+        }
+        aside_ += watch.lap();
+        if (done == a_.iterations) break;
+        std::uint64_t next = std::min(a_.iterations, (done / row + 1) * row);
+        if (a_.snapshots > 0) next = std::min(next, (done / a_.snapshots + 1) * a_.snapshots);
+        hydraulic_report const r = run.run(next - done, context, threads_);
+        done = r.iterations;
+        if (r.stopped == hydraulic_stop::observer) {
+            stopped_ = done < a_.iterations;
+            break;
+        }
+    }
+    if (stopped_) std::fprintf(stderr, "stopped after %llu iterations\n", static_cast<unsigned long long>(done));
+}
+
+template <class Run>
+surface_mesh hydraulic_session::surface(Run const& run) const {
+    triangle_surface const& s = run.surface();
+    std::vector<double> flow(run.flow().begin(), run.flow().end());
+    return mesh_with(s, {vertex_numbers("curvature", estimate_curvature(s, estimator_, threads_)),
+                         vertex_numbers("wear", {run.wear().begin(), run.wear().end()}), vertex_numbers("flow", std::move(flow)),
+                         vertex_numbers("sediment", run.sediment())});
+}
+
+template <class Run>
+void hydraulic_session::add_history(Run& run) {
+    hydraulic_report const& r = run.report();
+    std::string row = std::to_string(r.iterations) + "," + text_of(r.time) + "," + std::to_string(run.surface().positions.size()) + "," +
+                      std::to_string(r.contacts);
+    for (double const v : {r.ledger.eroded, r.ledger.deposited, r.ledger.carried, r.ledger.left}) row += "," + text_of(v);
+    history_.add(std::move(row));
+}
+
+template <class Run>
+void hydraulic_session::write_report(Run const& run) const {
+    hydraulic_report const& r = run.report();
+    water_settings const& w = water_;
+    nlohmann::ordered_json j;
+    j["schema"] = "tafoni.weather.hydraulic/1";
+    j["version"] = version_string;
+    j["process"] = "hydraulic";
+    j["input"] = a_.input;
+    j["seed"] = a_.seed;
+    j["parameters"] = {{"model", a_.model}, {"fluid", a_.fluid}, {"iterations", a_.iterations}, {"particles", a_.particles},
+                       {"emitter", {{"lo", json_of(w.emitter.box.lo)}, {"hi", json_of(w.emitter.box.hi)}}},
+                       {"velocity", json_of(w.emitter.velocity)}, {"gravity", json_of(w.gravity)}, {"radius", w.radius},
+                       {"friction", w.friction}, {"lifetime", w.lifetime}, {"viscosity", w.viscosity}, {"k", w.k}, {"tau_c", w.tau_c},
+                       {"a", a_.a}, {"K", a_.K}, {"m", a_.m}, {"influence", w.influence}, {"power", a_.power}, {"estimator", a_.estimator},
+                       {"durability", a_.durability}, {"step", a_.step}, {"refine", a_.refine}, {"snapshots", a_.snapshots},
+                       {"format", a_.formats}};
+    j["mesh"] = json_of(input_);
+    j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};
+    j["keep"] = {{"lo", json_of(w.sink.keep.lo)}, {"hi", json_of(w.sink.keep.hi)}};
+    j["threads"] = a_.threads;
+    j["stopped"] = stopped_ ? "interrupted" : "finished";
+    j["repaired"] = input_.repaired;
+    j["iterations"] = r.iterations;
+    j["time"] = r.time;
+    j["particles"] = r.particles;
+    j["contacts"] = r.contacts;
+    j["vertices"] = run.surface().positions.size();
+    j["faces"] = run.surface().triangles.size();
+    j["vertices_added"] = r.vertices_added;
+    j["ledger"] = {{"eroded", r.ledger.eroded}, {"deposited", r.ledger.deposited}, {"carried", r.ledger.carried}, {"left", r.ledger.left}};
+    j["volume_before"] = volume_of(input_.surface, input_.bounds);
+    auto const wear = run.wear();
+    j["largest_wear"] = wear.empty() ? 0.0 : *std::max_element(wear.begin(), wear.end());
+    j["seconds"] = seconds_;
+    out_.write_text("report.json", j.dump(2) + "\n");
+}
+
+}  // namespace weather
