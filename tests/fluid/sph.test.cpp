@@ -204,7 +204,7 @@ TEMPLATE_TEST_CASE("the order in which particles are given changes nothing", "",
 
 TEMPLATE_TEST_CASE("the sums are the same bits with and without AVX2", "", float, double) {
     auto const n = std::size_t{500};
-    std::size_t const pad = tafoni::detail::sph_lanes<TestType>::count;
+    std::size_t const pad = tafoni::detail::sph_lane_count<TestType>;
     std::array<std::vector<TestType>, 8> in;
     stream random(4, 0, 0);
     for (auto& a : in) {

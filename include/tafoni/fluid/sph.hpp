@@ -141,7 +141,7 @@ public:
 
 private:
     static constexpr double pi = 3.14159265358979323846;
-    static constexpr std::size_t pad = detail::sph_lanes<Scalar>::count;
+    static constexpr std::size_t pad = detail::sph_lane_count<Scalar>;
     using triple = std::array<std::vector<Scalar>, 3>;
 
     struct extremes {

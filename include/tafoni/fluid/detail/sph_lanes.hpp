@@ -1,5 +1,5 @@
 /// \file
-/// Vectors of a fixed number of lanes, so that sums round alike whatever the machine's own width is.
+/// Arrays for sums over neighbours in a fixed number of lanes, so that they round alike whatever width a machine has.
 #ifndef TAFONI_FLUID_DETAIL_SPH_LANES_HPP
 #define TAFONI_FLUID_DETAIL_SPH_LANES_HPP
 
@@ -8,43 +8,21 @@
 
 namespace tafoni::detail {
 
+/// Lanes of every sum: 8 of float, 4 of double.
 template <class Scalar>
-struct sph_lanes;
+inline constexpr std::size_t sph_lane_count = 32 / sizeof(Scalar);
 
-template <>
-struct sph_lanes<float> {
-    static constexpr std::size_t count = 8;
-    using value = float __attribute__((vector_size(32)));
-    using word = std::int32_t;
-    using mask = std::int32_t __attribute__((vector_size(32)));
-};
-
-template <>
-struct sph_lanes<double> {
-    static constexpr std::size_t count = 4;
-    using value = double __attribute__((vector_size(32)));
-    using word = std::int64_t;
-    using mask = std::int64_t __attribute__((vector_size(32)));
-};
-
-/// A vector at any address.
-template <class Vector>
-struct __attribute__((packed, may_alias)) sph_loose {
-    Vector lanes;
-};
-
-/// All ones, then all zeros: read from `count - n` on, the first n lanes are set.
-template <class Scalar>
+/// All ones, then all zeros: read from `sph_lane_count - n` on, the first n lanes are set.
+template <class Word>
 struct sph_tail {
-    using word = typename sph_lanes<Scalar>::word;
-    static constexpr std::size_t count = sph_lanes<Scalar>::count;
-    word words[2 * count];
+    static constexpr std::size_t count = sph_lane_count<Word>;
+    Word words[2 * count];
     constexpr sph_tail() : words{} {
         for (std::size_t k = 0; k < count; ++k) words[k] = -1;
     }
 };
-template <class Scalar>
-inline constexpr sph_tail<Scalar> sph_tails{};
+template <class Word>
+inline constexpr sph_tail<Word> sph_tails{};
 
 /// A stretch of sorted particles that may be near.
 struct sph_span {
@@ -57,7 +35,7 @@ struct sph_spans {
     std::uint32_t count = 0;
 };
 
-/// Sorted particles, in units of h and seconds. Arrays hold `count` lanes of zeros behind the last.
+/// Sorted particles, in units of h and seconds. Arrays that are read hold `sph_lane_count` zeros behind the last.
 template <class Scalar>
 struct sph_arrays {
     Scalar const* x = nullptr;
