@@ -45,7 +45,8 @@ struct settle_report {
 struct settle_fn {
     /// O(moves x 4 baseline x (height of the drops / 32 + 1) + changes log changes).
     /// \throws invalid_input  `bad_parameter` by the rule; `out_of_range` for a voxel outside the grid, `bad_count` for
-    ///         a released voxel that is named twice or is not air. The grid is unchanged then.
+    ///         a released voxel that is named twice or is not air.
+    /// Whatever is thrown, also by the executor or where memory runs out: the grid and `changes` are as they were.
     template <executor Executor = inline_executor>
     settle_report operator()(sparse_grid& grid, std::span<voxel const> released, std::span<voxel const> opened,
                              repose_rule const& rule, std::uint64_t seed, std::uint64_t step,
@@ -54,15 +55,23 @@ struct settle_fn {
         std::vector<voxel> copy;
         std::span<voxel const> const grains = detail::checked_grains(grid, released, opened, copy);
         detail::settle_pass pass(grid, detail::grain_slide(grid, rule, seed, step));
-        settle_report report;
-        report.left = pass.release(grains, executor);
-        report.deposited = grains.size() - report.left;
-        pass.resettle(opened, executor, report.moved, report.left);
-        pass.net_changes(changes);
-        return report;
+        std::size_t const told = changes.size();
+        try {
+            settle_report report;
+            report.left = pass.release(grains, executor);
+            report.deposited = grains.size() - report.left;
+            pass.resettle(opened, executor, report.moved, report.left);
+            pass.net_changes(changes);
+            return report;
+        } catch (...) {
+            pass.undo();
+            changes.resize(told);
+            throw;
+        }
     }
 };
 
+/// `settle(grid, released, opened, rule, seed, step, executor, changes)`; see `settle_fn`.
 inline constexpr settle_fn settle{};
 
 }  // namespace tafoni

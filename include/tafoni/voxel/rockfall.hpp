@@ -73,15 +73,19 @@ public:
     /// \param changes  gets rock -> air appended, each voxel once, in voxel order.
     /// \return  the pieces by their lowest voxels; the same for every executor.
     /// \throws invalid_input  `bad_parameter`, for a removed voxel that is rock or outside the grid, or another size of
-    ///         grid than before; nothing is changed then. Where memory runs out, some of what falls may have fallen;
-    ///         the next call looks at all.
+    ///         grid than before. Whatever is thrown, also by `ground_where`, by the executor or where memory runs
+    ///         out: the grid and `changes` are as they were. But for `invalid_input`, the next call looks at all.
     template <executor Executor>
     std::vector<fallen_block> fall(sparse_grid& grid, std::span<voxel const> removed, std::uint64_t step,
                                    Executor const& threads, std::vector<voxel_change>& changes) {
         std::vector<voxel> const gone = search_ ? checked(grid, removed) : std::vector<voxel>{};
+        std::size_t const told = changes.size();
         try {
             return let_fall_from(grid, gone, step, threads, changes);
         } catch (...) {
+            // Bricks that were changed are stored, so this needs no memory.
+            for (std::size_t i = told; i < changes.size(); ++i) grid.set(changes[i].at, voxel_state::rock);
+            changes.resize(told);
             restart();  // what the next call finds depends on the grid alone
             throw;
         }
@@ -271,9 +275,9 @@ private:
                  std::vector<voxel_change>& changes, std::vector<fallen_block>& out) {
         rock_left_ -= crumbs.size();
         for (voxel const v : crumbs) {
+            changes.push_back({v, voxel_state::rock, voxel_state::air});
             grid.set(v, voxel_state::air);
             search_->touch(grid.brick_of(v));
-            changes.push_back({v, voxel_state::rock, voxel_state::air});
         }
         std::vector<bool> seen(crumbs.size());
         for (std::size_t i = 0; i < crumbs.size(); ++i) {
@@ -316,9 +320,9 @@ private:
         for (std::size_t i = first; i < out.size(); ++i) {
             rock_left_ -= out[i].voxels.size();
             for (voxel const v : out[i].voxels) {
+                changes.push_back({v, voxel_state::rock, voxel_state::air});
                 grid.set(v, voxel_state::air);
                 search_->touch(grid.brick_of(v));
-                changes.push_back({v, voxel_state::rock, voxel_state::air});
                 if (rests && search_->cuts().is_cut(grid, v, 2)) above.push_back(v + voxel{0, 0, 1});
             }
         }

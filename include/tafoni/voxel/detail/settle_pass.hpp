@@ -113,7 +113,8 @@ public:
         }
     }
 
-    /// Every put turned air to colluvium or back: those put an odd number of times have changed.
+    /// Every put turned air to colluvium or back: those put an odd number of times have changed. Where it throws,
+    /// `changes` is to be cut back.
     void net_changes(std::vector<voxel_change>& changes) {
         sort_keys(puts_);
         for (std::size_t i = 0; i < puts_.size();) {
@@ -125,6 +126,14 @@ public:
                 changes.push_back({v, now == voxel_state::air ? voxel_state::colluvium : voxel_state::air, now});
             }
             i = end;
+        }
+    }
+
+    /// Takes back every put; their bricks are stored, so it needs no memory.
+    void undo() noexcept {
+        for (std::uint64_t const k : puts_) {
+            voxel const v = voxel_of_key(k);
+            grid_.set(v, grid_.state(v) == voxel_state::air ? voxel_state::colluvium : voxel_state::air);
         }
     }
 
@@ -273,8 +282,9 @@ private:
     }
 
     void put(voxel v, voxel_state s) {
-        grid_.set(v, s);
+        grid_.make_mixed(grid_.brick_of(v));  // what may throw comes before what changes
         puts_.push_back(voxel_key(v));
+        grid_.set(v, s);
         any_lifted_ = any_lifted_ || s == voxel_state::air;
         if (here_.empty()) return;
         here_[tile_of(v)] = round_;
