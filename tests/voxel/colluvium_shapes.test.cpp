@@ -296,6 +296,18 @@ TEST_CASE("no grains, no changes", "[colluvium]") {
     CHECK(changes[1] == voxel_change{{0, 0, 0}, air, loose});
 }
 
+TEST_CASE("a voxel that is named as opened many times is looked at as if named once", "[colluvium]") {
+    sparse_grid grid({.size = {3, 3, 9}}, up_axis::plus_z, {{border_kind::rock, border_kind::rock, border_kind::rock, border_kind::rock, border_kind::rock, border_kind::air}});
+    grid.set({1, 1, 7}, voxel_state::colluvium);
+    sparse_grid once = grid;
+    std::vector<voxel_change> changes;
+    std::vector<voxel_change> wanted;
+    settle(once, {}, std::vector<voxel>{{1, 1, 7}}, {}, 1, 1, inline_executor{}, wanted);
+    auto const r = settle(grid, {}, std::vector<voxel>(5000, voxel{1, 1, 7}), {}, 1, 1, inline_executor{}, changes);
+    CHECK(r.moved == 1);
+    CHECK(changes == wanted);
+}
+
 TEST_CASE("grains that cannot be are refused before anything moves", "[colluvium]") {
     auto g = box(4, 4, 4);
     g.set({1, 1, 1}, loose);

@@ -34,6 +34,7 @@ inline void sort_keys(std::vector<std::uint64_t>& keys) {
     }
     std::uint64_t differing = 0;
     for (std::uint64_t const k : keys) differing |= k ^ keys.front();
+    if (differing == 0) return;
     std::vector<std::uint64_t> other(keys.size());
     for (int shift = 0; shift < 64;) {
         shift += std::countr_zero(differing >> shift);
