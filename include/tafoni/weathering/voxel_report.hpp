@@ -16,9 +16,16 @@
 namespace tafoni {
 
 /// What the rate function is asked at: v is the share of air in the bubble.
+///
+/// The centre of a voxel at a flat surface lies half a voxel inside the rock, so v is less than one half there: by
+/// about 0.4 / r in a sphere of radius r, much more in thin bubbles. `signed_excess` takes that for a hollow, and flat
+/// rock recedes under cavernous weathering; `flat_excess` measures from there.
 enum class curvature_measure : std::uint8_t {
-    air_share,     ///< the paper's: v for spheroidal, 1 - v for cavernous weathering
-    signed_excess  ///< max(0, 2 v - 1) and max(0, 1 - 2 v): a plane does not weather
+    air_share,      ///< the paper's: v for spheroidal, 1 - v for cavernous weathering
+    signed_excess,  ///< max(0, 2 v - 1) and max(0, 1 - 2 v): over and under one half
+    /// max(0, v - h) / (1 - h) and max(0, l - v) / l, where l is the least and h the greatest share that flat ground,
+    /// walls and ceilings square to the axes show in the bubble: they neither round nor hollow.
+    flat_excess
 };
 
 /// Some steps under the same processes.

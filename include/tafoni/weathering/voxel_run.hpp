@@ -175,7 +175,7 @@ public:
         Process former = std::exchange(core_.process, checked(std::move(process)));
         try {
             auto rates = core_.rates;
-            rates.read(core_.process, core_.options.measure);
+            rates.read(core_.process, core_.options);
             core_.rescan(inline_executor{});
             core_.rates = std::move(rates);
         } catch (...) {
@@ -205,7 +205,7 @@ public:
         voxel_options former = std::exchange(core_.options, std::move(next));
         try {
             auto rates = core_.rates;
-            rates.read(core_.process, core_.options.measure);
+            rates.read(core_.process, core_.options);
             core_.rescan(inline_executor{});
             core_.start_rockfall();
             core_.rates = std::move(rates);

@@ -38,7 +38,7 @@ public:
         count.voxels_colluvium = grid.count(voxel_plane::colluvium);
         count.voxels_initial = count.voxels_rock + count.voxels_colluvium;
         skins.reset(grid.brick_count());
-        rates.read(process, options.measure);
+        rates.read(process, options);
         start_rockfall();
         rescan(threads);
         first_grid = grid_hash(grid);
@@ -57,6 +57,7 @@ public:
     /// Asks for bubble and durability again, and counts. Decimation stays. Strong guarantee. O(bricks + skin bubbles).
     template <executor Executor>
     void rescan(Executor const& threads) {
+        spare_.reset();  // it is brought up to date by the bricks touched last, which other bricks are from here on
         skins.touch_all(grid);
         skins.rebuild(grid, stencils(), options.skin_depth, asker(), voxel_skins::basis::replaced, threads);
         skins.commit();

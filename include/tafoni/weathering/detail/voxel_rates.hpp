@@ -5,8 +5,10 @@
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/voxel/bubble_stencil.hpp>
-#include <tafoni/weathering/voxel_report.hpp>
+#include <tafoni/weathering/voxel_options.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,24 +17,50 @@
 
 namespace tafoni::detail {
 
+/// What a bubble shows on flat rock: in the outermost layer at most, in the innermost layer of the skin at least.
+struct flat_air {
+    std::uint32_t least = 0;  ///< voxels of air
+    std::uint32_t most = 0;
+
+    /// Over the six directions of the axes. O(rows of the bubble x its reach).
+    [[nodiscard]] static flat_air of(bubble_stencil const& bubble, int skin_depth) noexcept {
+        std::array<std::array<std::uint32_t, 2>, 6> beyond{};  // by side, in the first layer and in the last
+        for (bubble_stencil::row const& row : bubble.rows()) {
+            for (int dz = -bubble.reach(); dz <= bubble.reach(); ++dz) {
+                auto const k = static_cast<unsigned>(dz + bubble_stencil::widest);
+                if ((row.bits[k / 64] >> (k % 64) & 1) == 0) continue;
+                std::array<int, 6> const out{-row.dx, row.dx, -row.dy, row.dy, -dz, dz};
+                for (std::size_t side = 0; side < 6; ++side) {
+                    if (out[side] >= 1) ++beyond[side][0];
+                    if (out[side] >= skin_depth) ++beyond[side][1];
+                }
+            }
+        }
+        flat_air flat{bubble.size(), 0};
+        for (auto const& [bare, deep] : beyond) {
+            flat.least = std::min(flat.least, deep);
+            flat.most = std::max(flat.most, bare);
+        }
+        return flat;
+    }
+};
+
 /// Tables of f over the counts of each bubble, and of A f + B f for the phase that runs.
 class voxel_rates {
 public:
     /// Strong guarantee. O(voxels of the bubbles) questions.
     template <class Process>
-    void read(Process const& process, curvature_measure measure) {
+    void read(Process const& process, voxel_options const& options) {
         std::vector<std::size_t> first;
         std::vector<double> spheroidal;
         std::vector<double> cavernous;
         for (bubble_stencil const& s : process.bubbles.stencils()) {
             first.push_back(spheroidal.size());
-            double const size = s.size();
+            flat_air const flat = flat_air::of(s, options.skin_depth);
             for (std::uint32_t air = 0; air <= s.size(); ++air) {
-                double const v = air / size;
-                double const rock = (s.size() - air) / size;
-                bool const shares = measure == curvature_measure::air_share;
-                spheroidal.push_back(checked(process.rate, shares ? v : positive(v - rock)));
-                cavernous.push_back(checked(process.rate, shares ? rock : positive(rock - v)));
+                auto const [c, hollow] = measured(options.measure, air, s.size(), flat);
+                spheroidal.push_back(checked(process.rate, c));
+                cavernous.push_back(checked(process.rate, hollow));
             }
         }
         std::vector<double> both(spheroidal.size(), 0);
@@ -61,6 +89,21 @@ public:
     [[nodiscard]] std::span<double const> cavernous_table() const noexcept { return cavernous_; }
 
 private:
+    struct arguments {
+        double spheroidal = 0;
+        double cavernous = 0;
+    };
+    static arguments measured(curvature_measure measure, std::uint32_t air, std::uint32_t size,
+                              flat_air const& flat) noexcept {
+        double const v = air / static_cast<double>(size);
+        double const rock = (size - air) / static_cast<double>(size);
+        if (measure == curvature_measure::air_share) return {v, rock};
+        if (measure == curvature_measure::signed_excess) return {positive(v - rock), positive(rock - v)};
+        arguments out;
+        if (air > flat.most) out.spheroidal = (air - flat.most) / static_cast<double>(size - flat.most);
+        if (air < flat.least) out.cavernous = (flat.least - air) / static_cast<double>(flat.least);
+        return out;
+    }
     static double positive(double x) noexcept { return x > 0 ? x : 0; }
     template <class Rate>
     static double checked(Rate const& rate, double c) {
