@@ -36,7 +36,7 @@ struct hydraulic_arguments {
     double power = 1;
     std::string estimator = "tensor";
     std::string durability = "1";
-    double step = 10;
+    double step = -1;                 ///< below 0: 10, for sph, whose steps are short, 100
     double refine = 0;
     std::uint64_t seed = 1;
     std::size_t threads = 1;

@@ -5,6 +5,7 @@
 
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
+#include <tafoni/fluid/sph.hpp>
 #include <tafoni/version.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
@@ -54,7 +55,7 @@ static_assert(exchange_rule<hardened>);
 
 }  // namespace
 
-std::vector<std::string> hydraulic_fluids() { return {"rain"}; }
+std::vector<std::string> hydraulic_fluids() { return {"rain", "sph"}; }
 
 hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
     : a_(a), progress_(progress_style_of(a.progress)), threads_(a.threads), out_(a.output, a.formats, vec3{0, 0, 0}),
@@ -103,8 +104,9 @@ void hydraulic_session::settle() {
     w.viscosity = a_.viscosity >= 0 ? a_.viscosity : 0.02 * speed * w.radius;
     double const stress = speed / edge;  // of water as thick as an edge at that speed
     w.tau_c = a_.tau_c.empty() ? text_of(0.1 * stress) : a_.tau_c;
-    w.k = a_.k.empty() ? text_of(0.004 * size / (fall * stress)) : a_.k;
+    w.k = a_.k.empty() ? text_of(0.04 * size / (fall * stress)) : a_.k;
     w.influence = a_.influence > 0 ? a_.influence : edge;
+    w.step = a_.step >= 1 ? a_.step : a_.fluid == "sph" ? 100 : 10;
     int const axis = axis_of(w.up);
     bool const rises = w.up[axis] > 0;
     box3 const& b = input_.bounds;
@@ -155,7 +157,15 @@ bool hydraulic_session::run() {
 
 template <class Process>
 void hydraulic_session::run_process(Process const& process) {
-    hydraulic_options const options{.step_divisor = a_.step, .refine_length = a_.refine};
+    hydraulic_options const options{.step_divisor = water_.step, .refine_length = a_.refine};
+    if (a_.fluid == "sph") {
+        sph<float> const water(water_.emitter, water_.sink,
+                               {.particles = a_.particles, .spacing = water_.radius, .viscosity = water_.viscosity,
+                                .gravity = water_.gravity, .largest_step = water_.largest_step});
+        hydraulic_run run(input_.surface, water, process, options);
+        run_with(run);
+        return;
+    }
     rain_particles const rain(water_.emitter, water_.sink,
                               {.particles = a_.particles, .radius = water_.radius, .gravity = water_.gravity, .friction = water_.friction,
                                .largest_step = water_.largest_step, .lifetime = water_.lifetime, .seed = a_.seed});
@@ -256,7 +266,7 @@ void hydraulic_session::write_report(Run const& run) const {
                        {"velocity", json_of(w.emitter.velocity)}, {"gravity", json_of(w.gravity)}, {"radius", w.radius},
                        {"friction", w.friction}, {"lifetime", w.lifetime}, {"viscosity", w.viscosity}, {"k", w.k}, {"tau_c", w.tau_c},
                        {"a", a_.a}, {"K", a_.K}, {"m", a_.m}, {"influence", w.influence}, {"power", a_.power}, {"estimator", a_.estimator},
-                       {"durability", a_.durability}, {"step", a_.step}, {"refine", a_.refine}, {"snapshots", a_.snapshots},
+                       {"durability", a_.durability}, {"step", w.step}, {"refine", a_.refine}, {"snapshots", a_.snapshots},
                        {"format", a_.formats}};
     j["mesh"] = json_of(input_);
     j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};

@@ -42,6 +42,7 @@ private:
         std::string k;
         std::string tau_c;
         double influence = 0;
+        double step = 10;
     };
     struct field_set {
         tafoni::any_field k, tau_c, a, K, m, durability;

@@ -146,8 +146,8 @@ indexed_mesh solid_of(box3 const& box, double resolution, F const& inside) {
 /// A block with a narrow, winding gorge that falls along x.
 indexed_mesh make_canyon(spec& s, std::uint64_t seed) {
     double const resolution = s.number("resolution", 110, 8, 2000);
-    double const width = s.number("width", 0.09, 0.01, 0.5);
-    double const depth = s.number("depth", 0.42, 0.05, 0.5);
+    double const width = s.number("width", 0.16, 0.01, 0.5);
+    double const depth = s.number("depth", 0.34, 0.05, 0.5);
     fractal_noise const rough{.seed = seed, .frequency = 9, .octaves = 3};
     fractal_noise const rolling{.seed = seed + 1, .frequency = 2.5, .octaves = 2};
     box3 const box{.lo = {0, 0, -0.2}, .hi = {1.6, 1, 0.75}};
