@@ -1,11 +1,15 @@
 #include <tafoni/core/random.hpp>
+#include <tafoni/core/thread_pool.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
 #include <tafoni/weathering/voxel_run.hpp>
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,6 +43,17 @@ struct fragile_durability {
     }
 };
 
+/// Likewise.
+struct fragile_choice {
+    std::array<bubble_stencil, 2> bubbles{sphere_bubble{.radius = 3}, sphere_bubble{.radius = 4}};
+    std::shared_ptr<std::atomic<int>> left = std::make_shared<std::atomic<int>>(1 << 30);
+    std::span<bubble_stencil const> stencils() const { return bubbles; }
+    std::size_t choose(vec3 const& p) const {
+        if (--*left == 0) throw std::runtime_error("no more");
+        return p[0] > 12 ? 1 : 0;
+    }
+};
+
 }  // namespace
 
 TEST_CASE("C1: a run that is stopped at any tick goes on to the same state") {
@@ -65,6 +80,21 @@ TEST_CASE("C1: a run that is stopped at any tick goes on to the same state") {
         REQUIRE((r.stopped == voxel_stop::observer) == (stop < 7));
         auto const rest = run.run(schedule.after(r.steps));
         REQUIRE(rest.stopped == voxel_stop::finished);
+        REQUIRE(run.checkpoint() == whole.checkpoint());
+    }
+}
+
+TEST_CASE("C1: a run by events that is stopped at any tick goes on to the same state") {
+    voxel_schedule const schedule{.phases = {{.steps = 2}, {.steps = 2, .spheroidal = 0.5, .cavernous = 1}}, .clock = voxel_clock::events};
+    auto const process = voxel_weathering{.durability = constant_field{.value = 0.03}};
+    voxel_run whole(lump(), process, everything());
+    REQUIRE(whole.run(schedule).voxels_vanished + whole.report().voxels_colluvium > 20);
+    for (std::size_t stop = 0; stop <= 4; ++stop) {
+        voxel_run run(lump(), process, everything());
+        std::size_t tick = 0;
+        auto const r = run.run(schedule, {[&](progress_event const&) { return tick++ == stop ? step_control::stop : step_control::proceed; }});
+        REQUIRE(r.steps == stop);
+        run.run(schedule.after(r.steps));
         REQUIRE(run.checkpoint() == whole.checkpoint());
     }
 }
@@ -107,6 +137,102 @@ TEST_CASE("C2: a policy that throws at any call leaves the state after the last 
             REQUIRE(run.checkpoint() == states.back());
         }
     }
+}
+
+TEST_CASE("C2: an observer that throws at any tick or snapshot leaves the state after the step just completed") {
+    voxel_schedule schedule{.phases = {{.steps = 3}, {.steps = 2, .spheroidal = 0, .cavernous = 2}}, .snapshot_every = 1};
+    auto const process = voxel_weathering{.durability = constant_field{.value = 0.015}};
+    std::vector<std::vector<std::byte>> states;
+    voxel_run whole(lump(), process, everything());
+    states.push_back(whole.checkpoint());
+    schedule.on_snapshot = [&](std::uint64_t) {
+        states.push_back(whole.checkpoint());
+        return step_control::proceed;
+    };
+    whole.run(schedule);
+    REQUIRE(states.size() == 6);
+    for (std::size_t at = 0; at < 11; ++at) {  // a tick, then a snapshot and a tick for each step
+        voxel_run run(lump(), process, everything());
+        std::size_t told = 0;
+        auto const tell = [&](auto const&) {
+            if (told++ == at) throw std::runtime_error("enough");
+            return step_control::proceed;
+        };
+        schedule.on_snapshot = tell;
+        REQUIRE_THROWS_AS(run.run(schedule, {tell}), std::runtime_error);
+        REQUIRE(run.steps() == (at + 1) / 2);
+        REQUIRE(run.checkpoint() == states[run.steps()]);
+        schedule.on_snapshot = {};
+        run.run(schedule.after(run.steps()));
+        REQUIRE(run.checkpoint() == states.back());
+    }
+}
+
+TEST_CASE("C2: a choice of bubbles that throws at any call leaves the state after the last complete step") {
+    fragile_choice const whole_choice;
+    voxel_run whole(lump(), voxel_weathering{.bubbles = whole_choice, .durability = constant_field{.value = 0.015}}, everything());
+    std::vector<std::vector<std::byte>> states{whole.checkpoint()};
+    int const first = (1 << 30) - *whole_choice.left;
+    for (int k = 0; k < 4; ++k) {
+        whole.run({.phases = {{.steps = 1}}});
+        states.push_back(whole.checkpoint());
+    }
+    int const calls = (1 << 30) - *whole_choice.left - first;
+    REQUIRE(calls > 200);
+    voxel_schedule const schedule{.phases = {{.steps = 4}}};
+    for (int at = 1; at <= calls; at += 1 + calls / 30) {
+        fragile_choice const choice;
+        voxel_run run(lump(), voxel_weathering{.bubbles = choice, .durability = constant_field{.value = 0.015}}, everything());
+        *choice.left = at;
+        thread_pool const pool(3);
+        REQUIRE_THROWS_AS(run.run(schedule, {}, pool), std::runtime_error);
+        *choice.left = 1 << 30;
+        REQUIRE(run.checkpoint() == states[run.steps()]);
+        run.run(schedule.after(run.steps()), {}, pool);
+        REQUIRE(run.checkpoint() == states.back());
+    }
+}
+
+TEST_CASE("C2: policies that throw while they replace others leave the others, and the run goes on as if nothing had been") {
+    fragile_choice const choice;
+    auto const left = std::make_shared<std::atomic<int>>(1 << 30);
+    auto const rate = [left](double c) {
+        if (--*left == 0) throw std::runtime_error("no more");
+        return 3 * c * c * c;
+    };
+    voxel_weathering const process{.bubbles = choice, .rate = rate, .durability = constant_field{.value = 0.015}};
+    voxel_run whole(lump(), process, everything());
+    whole.run({.phases = {{.steps = 2}}});
+    auto const start = whole.checkpoint();
+    whole.run({.phases = {{.steps = 3}}});
+    auto const end = whole.checkpoint();
+
+    voxel_run run(lump(), process, everything());
+    run.run({.phases = {{.steps = 2}}});
+    int const asked = [&] {
+        *left = 1 << 30;
+        *choice.left = 1 << 30;
+        run.replace(process);
+        return (1 << 30) - *choice.left;
+    }();
+    int const rated = (1 << 30) - *left;
+    REQUIRE(asked > 200);
+    REQUIRE(rated > 50);
+    voxel_weathering const harder{.bubbles = choice, .rate = rate, .durability = constant_field{.value = 0.5}};
+    for (auto const& [countdown, calls] : {std::pair{choice.left, asked}, std::pair{left, rated}}) {
+        for (int at = 1; at <= calls; at += 1 + calls / 30) {
+            *countdown = at;
+            REQUIRE_THROWS_AS(run.replace(harder), std::runtime_error);
+            *countdown = at;
+            REQUIRE_THROWS_AS(run.replace(voxel_options{.skin_depth = 2}), std::runtime_error);
+            *countdown = 1 << 30;
+            REQUIRE(run.process().durability.value == 0.015);
+            REQUIRE(run.options().skin_depth == 1);
+            REQUIRE(run.checkpoint() == start);
+        }
+    }
+    run.run({.phases = {{.steps = 3}}});
+    REQUIRE(run.checkpoint() == end);
 }
 
 TEST_CASE("C2: an event that is cut short leaves the events before it, and the run goes on") {

@@ -1,5 +1,7 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/thread_pool.hpp>
+#include <tafoni/field/durability_profile.hpp>
+#include <tafoni/voxel/bubble_profile.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
 #include <tafoni/weathering/voxel_run.hpp>
 
@@ -85,10 +87,19 @@ void check_recomputed(Run const& run) {
                 std::uint32_t air = 0;
                 for (auto const& row : stencil.rows()) {
                     for (int dz = -stencil.reach(); dz <= stencil.reach(); ++dz) {
-                        if (stencil.contains(row.dx, row.dy, dz) && !g.is_solid(v + voxel{row.dx, row.dy, dz})) ++air;
+                        auto const k = static_cast<unsigned>(dz + bubble_stencil::widest);
+                        bool const inside = (row.bits[k / 64] >> (k % 64) & 1) != 0;
+                        if (inside && !g.is_solid(v + voxel{row.dx, row.dy, dz})) ++air;
                     }
                 }
-                if (skin[at].air_share != air / static_cast<double>(stencil.size())) FAIL("another count of air");
+                double const size = stencil.size();
+                if (skin[at].air_share != air / size) FAIL("another count of air");
+                if (skin[at].state != g.state(v)) FAIL("another state");
+                double const durability = std::max(run.process().durability(g.centre(v)), 1e-3);
+                if (skin[at].durability != durability) FAIL("another durability");
+                double const rock = (stencil.size() - air) / size;
+                if (run.spheroidal_rate(skin[at]) != run.process().rate(air / size) / durability) FAIL("another rate");
+                if (run.cavernous_rate(skin[at]) != run.process().rate(rock) / durability) FAIL("another rate");
                 ++at;
             }
         }
@@ -139,6 +150,76 @@ TEST_CASE("no voxel is lost, and the skin and every count are those of the grid,
         }
         REQUIRE(run.report().voxels_rock < run.report().voxels_initial);
     }
+}
+
+TEST_CASE("whatever lies beyond the border, rates equal recomputed ones after deposits and falls") {
+    stream random(12, stage::user, 0);
+    std::size_t fallen = 0;
+    std::size_t deposited = 0;
+    for (auto const& size : std::vector<std::array<std::size_t, 3>>{{33, 6, 20}, {7, 34, 21}, {40, 1, 33}, {1, 1, 40}, {34, 33, 3}}) {
+        for (int k = 0; k < 5; ++k) {
+            grid_border border;
+            for (border_kind& side : border.sides) side = static_cast<border_kind>(random.index_below(3));
+            if (k == 0) border.sides.fill(border_kind::extend);
+            double const radius = 2.0 + static_cast<double>(random.index_below(4));
+            voxel_run run(lump(size, random.index_below(1000), border, 0.1),
+                          voxel_weathering{.bubbles = single_bubble{gumdrop_bubble{.radius = radius}},
+                                           .durability = constant_field{.value = 0.02}},
+                          {.skin_depth = 1 + k % 2, .colluvium = repose_rule{}, .rockfall = rockfall_options{}});
+            check_recomputed(run);
+            for (int step = 0; step < 4; ++step) {
+                run.run({.phases = {{.steps = 1, .spheroidal = 4, .cavernous = 1}},
+                         .clock = step == 2 ? voxel_clock::events : voxel_clock::steps});
+                check_ledger(run);
+                check_recomputed(run);
+            }
+            fallen += run.report().voxels_fallen;
+            deposited += run.report().voxels_colluvium;
+        }
+    }
+    REQUIRE(fallen > 100);
+    REQUIRE(deposited > 1000);
+}
+
+TEST_CASE("the bubble profile and the durability profile are edited during a run, and everything is counted anew") {
+    bubble_profile<> bubbles{.bubbles = {sphere_bubble{.radius = 3}, disc_bubble{.radius = 5, .thickness = 2}, sphere_bubble{.radius = 5}},
+                             .layers = {{.top = 12, .mix = {0}}, {.top = 20, .mix = {0, 2}}, {.mix = {1}}},
+                             .field = gradient_noise{.seed = 3, .frequency = 0.2}};
+    durability_profile<> durability{.points = {{0, 0.02}, {18, 0.05, 0.01, 0.3}, {18, 0.015}, {36, 0.03}}};
+    voxel_run run(lump({20, 5, 34}, 14, ground, 0.05), voxel_weathering{.bubbles = bubbles, .durability = durability},
+                  {.colluvium = repose_rule{}, .rockfall = rockfall_options{}});
+    auto const go_on = [&] {
+        auto const before = run.checkpoint();
+        check_recomputed(run);
+        run.run({.phases = {{.steps = 2, .spheroidal = 1, .cavernous = 0.5}}});
+        check_ledger(run);
+        check_recomputed(run);
+        REQUIRE(run.checkpoint() != before);
+    };
+    go_on();
+    bubbles.layers[0].top = 8;  // a boundary is dragged
+    run.replace(bubbles);
+    go_on();
+    bubbles.bubbles.push_back(gumdrop_bubble{.radius = 6});  // another bubble; and a layer mixes it
+    bubbles.layers[2].mix = {3, 1};
+    run.replace(bubbles);
+    go_on();
+    bubbles.bubbles[0] = sphere_bubble{.radius = 17.5};  // another size, of those that are counted by columns
+    run.replace(bubbles);
+    go_on();
+    durability.points[1].durability = 0.01;
+    durability.points[1].frequency = 0.1;
+    run.replace(durability);
+    go_on();
+    bubbles.bubbles.erase(bubbles.bubbles.begin() + 1, bubbles.bubbles.end());
+    bubbles.layers = {{.mix = {0}}};
+    run.replace(bubbles);
+    go_on();
+    bubbles.layers[0].mix = {1};  // a bubble that is not there: nothing changes
+    auto const before = run.checkpoint();
+    REQUIRE_THROWS_AS(run.replace(bubbles), invalid_input);
+    REQUIRE(run.checkpoint() == before);
+    check_recomputed(run);
 }
 
 TEST_CASE("steps in one run, in two runs, and on any number of threads give the same state") {

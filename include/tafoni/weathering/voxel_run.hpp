@@ -14,9 +14,11 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -172,32 +174,28 @@ public:
 
     /// Replaces the policies between steps; decimation stays. Strong guarantee. O(bricks + skin voxels in bubbles).
     void replace(Process process) {
-        Process former = std::exchange(core_.process, checked(std::move(process)));
+        process.validate();
+        Process former = std::move(core_.process);
+        put(std::move(process));
         try {
             auto rates = core_.rates;
             rates.read(core_.process, core_.options);
             core_.rescan(inline_executor{});
             core_.rates = std::move(rates);
         } catch (...) {
-            core_.process = std::move(former);
+            put(std::move(former));
             throw;
         }
     }
     /// One policy of a `voxel_weathering`, likewise.
     void replace(decltype(Process::bubbles) bubbles) {
-        Process p = core_.process;
-        p.bubbles = std::move(bubbles);
-        replace(std::move(p));
+        replace(Process{.bubbles = std::move(bubbles), .rate = core_.process.rate, .durability = core_.process.durability});
     }
     void replace(decltype(Process::rate) rate) {
-        Process p = core_.process;
-        p.rate = std::move(rate);
-        replace(std::move(p));
+        replace(Process{.bubbles = core_.process.bubbles, .rate = std::move(rate), .durability = core_.process.durability});
     }
     void replace(decltype(Process::durability) durability) {
-        Process p = core_.process;
-        p.durability = std::move(durability);
-        replace(std::move(p));
+        replace(Process{.bubbles = core_.process.bubbles, .rate = core_.process.rate, .durability = std::move(durability)});
     }
     /// Replaces the options between steps; `up` and `border` stay those of the grid. Strong guarantee.
     void replace(voxel_options const& options) {
@@ -259,6 +257,12 @@ private:
     }
     [[nodiscard]] std::uint32_t air_of(skin_voxel const& v) const noexcept {
         return static_cast<std::uint32_t>(v.air_share * core_.process.bubbles.stencils()[v.bubble].size() + 0.5);
+    }
+    /// Policies need not be assignable: lambdas that capture are not.
+    void put(Process&& process) noexcept {
+        static_assert(std::is_nothrow_move_constructible_v<Process>, "a policy that is replaced must be moved without a throw");
+        std::destroy_at(&core_.process);
+        std::construct_at(&core_.process, std::move(process));
     }
     static Process checked(Process process) {
         process.validate();
