@@ -6,6 +6,7 @@
 #include "progress.hpp"
 #include "spec.hpp"
 #include "voxel_command.hpp"
+#include "wrinkles_command.hpp"
 
 #include <tafoni/core/error.hpp>
 #include <tafoni/version.hpp>
@@ -24,7 +25,8 @@ constexpr int exit_interrupted = 130;
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Weathers rock: frost wedges shards off, bubbles of air round edges off and hollow caverns out."};
+    CLI::App app{"Weathers rock: frost wedges shards off, bubbles of air round edges off and hollow caverns out, meshes wear by "
+                 "their curvature and under running water, wrinkles fold and crack them."};
     app.require_subcommand(1);
     app.set_version_flag("--version", weather::version_text());
     weather::frost_arguments frost;
@@ -35,6 +37,8 @@ int main(int argc, char** argv) {
     CLI::App* const curvature_command = weather::add_curvature_command(app, curvature);
     weather::hydraulic_arguments hydraulic;
     CLI::App* const hydraulic_command = weather::add_hydraulic_command(app, hydraulic);
+    weather::wrinkles_arguments wrinkles;
+    CLI::App* const wrinkles_command = weather::add_wrinkles_command(app, wrinkles);
     try {
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
@@ -46,6 +50,7 @@ int main(int argc, char** argv) {
         if (voxel_command->parsed()) return weather::run_voxel(voxel) ? 0 : exit_interrupted;
         if (curvature_command->parsed()) return weather::run_curvature(curvature) ? 0 : exit_interrupted;
         if (hydraulic_command->parsed()) return weather::run_hydraulic(hydraulic) ? 0 : exit_interrupted;
+        if (wrinkles_command->parsed()) return weather::run_wrinkles(wrinkles) ? 0 : exit_interrupted;
     } catch (weather::usage_error const& e) {
         std::fprintf(stderr, "weather: %s\n", e.what());
         return exit_usage;
