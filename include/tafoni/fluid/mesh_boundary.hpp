@@ -25,7 +25,9 @@ namespace tafoni {
 /// mesh, which must outlive it; `refit` after its vertices have moved. Models `fluid_boundary`.
 ///
 /// A particle's question costs one cell. Cells are about as long as the larger of twice the reach and the mean
-/// edge; there are at most about 8 million of 4 bytes, and 4 bytes for every face in a cell.
+/// edge; there are at most about 8 million of 4 bytes, and 4 bytes for every face in a cell. Faces are also in cells
+/// that they come to when vertices move by a quarter of the larger of reach and mean edge; until one moves farther
+/// the cells stay. Answers depend on the mesh alone, never on when the cells were filled.
 class mesh_boundary {
 public:
     /// O(faces + cells). \throws invalid_input  `bad_parameter` for a reach that is not positive and finite,
@@ -34,16 +36,171 @@ public:
         : reach_(reach) {
         detail::require_range("mesh_boundary: reach", reach, std::numeric_limits<double>::min(), 1e100);
         detail::require_indexable("mesh_boundary: faces", triangles.size());
-        refit(positions, triangles);
+        positions_ = positions;
+        triangles_ = triangles;
+        fill();
     }
 
-    /// Follows vertices that moved and faces that changed. O(faces + cells).
+    /// Follows vertices that moved and faces that changed. O(vertices + faces); O(cells) more where the faces are
+    /// others or a vertex has gone far.
     void refit(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
         positions_ = positions;
         triangles_ = triangles;
+        if (positions.size() != last_.size() || !std::equal(triangles.begin(), triangles.end(), faces_then_.begin(), faces_then_.end())) {
+            return fill();
+        }
+        moved_.resize(positions.size());
+        double farthest = 0;
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            vec3 const& p = positions[v];
+            vec3 const& q = last_[v];
+            moved_[v] = p[0] == q[0] && p[1] == q[1] && p[2] == q[2] ? 0 : 1;
+            if (moved_[v] == 0) continue;
+            farthest = std::max(farthest, squared_length(p - base_[v]));
+            last_[v] = p;
+        }
+        if (!(farthest <= slack_ * slack_)) return fill();
+        for (std::size_t f = 0; f < triangles.size(); ++f) {
+            auto const& t = triangles[f];
+            if ((moved_[t[0]] | moved_[t[1]] | moved_[t[2]]) != 0) discs_[f] = disc_of(t);
+        }
+    }
+
+    [[nodiscard]] double reach() const noexcept { return reach_; }
+    [[nodiscard]] std::span<vec3 const> positions() const noexcept { return positions_; }
+    [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return (begin_.capacity() + at_.capacity() + faces_.capacity()) * sizeof(std::uint32_t) + discs_.capacity() * sizeof(disc) +
+               (last_.capacity() + base_.capacity()) * sizeof(vec3) + faces_then_.capacity() * sizeof(std::array<std::uint32_t, 3>) +
+               moved_.capacity();
+    }
+
+    /// As the concept asks; `radius` at most `reach()`. O(faces in a cell).
+    template <class Visit>
+    void for_each_contact(vec3 const& p, double radius, Visit const& visit) const {
+        std::size_t const c = cell_of(p);
+        if (c == outside) return;
+        std::uint32_t const* const begin = faces_.data() + begin_[c];
+        std::uint32_t const* const end = faces_.data() + begin_[c + 1];
+        if (begin == end) return;
+        bool found = false;
+        seen const at = see(p);
+        float const most = static_cast<float>(radius * inverse_) + blur_;
+        float nearest = std::numeric_limits<float>::max();  // square of the way to some point of a face
+        for (std::uint32_t const* k = begin; k != end; ++k) {
+            disc const& d = discs_[*k];
+            auto const [square, over] = at.from(d);
+            nearest = square < nearest ? square : nearest;
+            if (over > most || over < -most || square - over * over > d.square + 1e-5F * square) continue;
+            found = visit_over(*k, p, radius, visit) || found;
+        }
+        if (!found) visit_nearest(p, radius, {begin, end}, std::sqrt(nearest) + blur_, visit);
+    }
+
+private:
+    static constexpr std::size_t outside = ~std::size_t{0};
+    static constexpr double most_cells = 8e6;
+
+    /// A circle that holds a face, rounded outwards: what most faces of a cell are told apart from contacts by.
+    struct disc {
+        float x, y, z;     ///< from the corner of the grid, in cells, as all of it
+        float nx, ny, nz;  ///< normal, zero where the face has none
+        float radius;
+        float square;      ///< of the radius
+    };
+    struct seen {
+        float x, y, z;
+        struct sight {
+            float square;  ///< distance from the middle of the disc
+            float over;    ///< height over its plane
+        };
+        [[nodiscard]] sight from(disc const& d) const noexcept {
+            float const a = x - d.x;
+            float const b = y - d.y;
+            float const c = z - d.z;
+            return {a * a + b * b + c * c, a * d.nx + b * d.ny + c * d.nz};
+        }
+    };
+    [[nodiscard]] seen see(vec3 const& p) const noexcept {
+        return {static_cast<float>((p[0] - lo_[0]) * inverse_), static_cast<float>((p[1] - lo_[1]) * inverse_),
+                static_cast<float>((p[2] - lo_[2]) * inverse_)};
+    }
+    [[nodiscard]] disc disc_of(std::array<std::uint32_t, 3> const& t) const noexcept {
+        vec3 const& a = positions_[t[0]];
+        vec3 const& b = positions_[t[1]];
+        vec3 const& c = positions_[t[2]];
+        vec3 const m{(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3};
+        vec3 const n = normalized(cross(vec3{b - a}, vec3{c - a}));
+        double const r = std::sqrt(std::max({squared_length(a - m), squared_length(b - m), squared_length(c - m)}));
+        seen const at = see(m);
+        float const wide = static_cast<float>(r * inverse_) + blur_;
+        return {at.x, at.y, at.z, static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]), wide, wide * wide};
+    }
+
+    /// Whether the foot of the normal meets the face.
+    template <class Visit>
+    bool visit_over(std::uint32_t f, vec3 const& p, double radius, Visit const& visit) const {
+        auto const& t = triangles_[f];
+        vec3 const& a = positions_[t[0]];
+        vec3 const u{positions_[t[1]] - a};
+        vec3 const v{positions_[t[2]] - a};
+        vec3 const w{p - a};
+        vec3 const n = cross(u, v);
+        double const nn = dot(n, n);
+        double const over = dot(w, n);
+        if (!(nn > 0) || over * over > radius * radius * nn) return false;
+        double const y = dot(cross(w, v), n);
+        double const z = dot(cross(u, w), n);
+        if (!(y >= 0 && z >= 0 && y + z <= nn)) return false;
+        double const l = std::sqrt(nn);
+        visit(boundary_contact{.face = f, .normal = vec3{n[0] / l, n[1] / l, n[2] / l}, .distance = over / l});
+        return true;
+    }
+
+    /// Over an edge or a corner, where no face has the foot. Some point of a face is no farther than `bound`.
+    template <class Visit>
+    void visit_nearest(vec3 const& p, double radius, std::span<std::uint32_t const> faces, float bound, Visit const& visit) const {
+        double nearest = radius * radius;
+        std::uint32_t best = face_index::none;
+        vec3 way{0, 0, 0};
+        seen const at = see(p);
+        float const limit = std::min(static_cast<float>(radius * inverse_) + blur_, bound) * (1 + 1e-5F);
+        for (std::uint32_t const f : faces) {
+            disc const& d = discs_[f];
+            auto const [square, over] = at.from(d);
+            float const wide = d.radius + limit;
+            if (over > limit || over < -limit || square > wide * wide * (1 + 1e-5F)) continue;
+            auto const& t = triangles_[f];
+            vec3 const foot = detail::nearest_on_triangle(positions_[t[0]], positions_[t[1]], positions_[t[2]], p);
+            vec3 const away{p - foot};
+            double const length_squared = squared_length(away);
+            if (!(length_squared < nearest)) continue;
+            nearest = length_squared;
+            best = f;
+            way = away;
+        }
+        double const l = std::sqrt(nearest);
+        if (best == face_index::none || !(l > 0)) return;
+        auto const& t = triangles_[best];
+        vec3 const& a = positions_[t[0]];
+        bool const behind = dot(p - a, cross(positions_[t[1]] - a, positions_[t[2]] - a)) < 0;
+        double const s = behind ? -1 / l : 1 / l;
+        visit(boundary_contact{.face = best, .normal = vec3{s * way[0], s * way[1], s * way[2]}, .distance = behind ? -l : l});
+    }
+
+    [[nodiscard]] std::size_t cells() const noexcept { return size_[0] * size_[1] * size_[2]; }
+
+    void fill() {
         lay_out();
+        last_.assign(positions_.begin(), positions_.end());
+        base_ = last_;
+        faces_then_.assign(triangles_.begin(), triangles_.end());
+        discs_.resize(triangles_.size());
+        spans_.resize(triangles_.size());
         begin_.assign(cells() + 1, 0);
         for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+            discs_[f] = disc_of(triangles_[f]);
+            spans_[f] = span_of(triangles_[f]);
             for_each_cell(f, [&](std::size_t c) { ++begin_[c + 1]; });
         }
         std::uint64_t total = 0;
@@ -59,74 +216,6 @@ public:
         }
     }
 
-    [[nodiscard]] double reach() const noexcept { return reach_; }
-    [[nodiscard]] std::span<vec3 const> positions() const noexcept { return positions_; }
-    [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return (begin_.capacity() + at_.capacity() + faces_.capacity()) * sizeof(std::uint32_t);
-    }
-
-    /// As the concept asks; `radius` at most `reach()`. O(faces in a cell).
-    template <class Visit>
-    void for_each_contact(vec3 const& p, double radius, Visit const& visit) const {
-        std::size_t const c = cell_of(p);
-        if (c == outside) return;
-        bool found = false;
-        for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k) {
-            std::uint32_t const f = faces_[k];
-            auto const& t = triangles_[f];
-            vec3 const& a = positions_[t[0]];
-            vec3 const u{positions_[t[1]] - a};
-            vec3 const v{positions_[t[2]] - a};
-            vec3 const w{p - a};
-            vec3 const n = cross(u, v);
-            double const nn = dot(n, n);
-            double const over = dot(w, n);
-            if (!(nn > 0) || over * over > radius * radius * nn) continue;
-            double const y = dot(cross(w, v), n);
-            double const z = dot(cross(u, w), n);
-            if (!(y >= 0 && z >= 0 && y + z <= nn)) continue;
-            double const l = std::sqrt(nn);
-            found = true;
-            visit(boundary_contact{.face = f, .normal = vec3{n[0] / l, n[1] / l, n[2] / l}, .distance = over / l});
-        }
-        if (!found) visit_nearest(p, radius, c, visit);
-    }
-
-private:
-    static constexpr std::size_t outside = ~std::size_t{0};
-    static constexpr double most_cells = 8e6;
-
-    /// Over an edge or a corner, where no face has the foot.
-    template <class Visit>
-    void visit_nearest(vec3 const& p, double radius, std::size_t c, Visit const& visit) const {
-        double nearest = radius * radius;
-        std::uint32_t best = face_index::none;
-        vec3 way{0, 0, 0};
-        for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k) {
-            auto const& t = triangles_[faces_[k]];
-            box3 box;
-            for (std::uint32_t const v : t) box.include(positions_[v]);
-            if (detail::squared_distance(box, p) >= nearest) continue;
-            vec3 const foot = detail::nearest_on_triangle(positions_[t[0]], positions_[t[1]], positions_[t[2]], p);
-            vec3 const d{p - foot};
-            double const square = squared_length(d);
-            if (!(square < nearest)) continue;
-            nearest = square;
-            best = faces_[k];
-            way = d;
-        }
-        double const l = std::sqrt(nearest);
-        if (best == face_index::none || !(l > 0)) return;
-        auto const& t = triangles_[best];
-        vec3 const& a = positions_[t[0]];
-        bool const behind = dot(p - a, cross(positions_[t[1]] - a, positions_[t[2]] - a)) < 0;
-        double const s = behind ? -1 / l : 1 / l;
-        visit(boundary_contact{.face = best, .normal = vec3{s * way[0], s * way[1], s * way[2]}, .distance = behind ? -l : l});
-    }
-
-    [[nodiscard]] std::size_t cells() const noexcept { return size_[0] * size_[1] * size_[2]; }
-
     void lay_out() {
         box3 box;
         double edges = 0;
@@ -138,42 +227,69 @@ private:
         }
         size_ = {0, 0, 0};
         if (triangles_.empty()) return;
-        double cell = std::max(2 * reach_, edges / (3 * static_cast<double>(triangles_.size())));
+        double const edge = edges / (3 * static_cast<double>(triangles_.size()));
+        cell_ = std::max(2 * reach_, edge);
+        slack_ = 0.25 * std::max(reach_, edge);
+        double const rim = reach_ + slack_;
         vec3 const e = box.extent();
-        lo_ = vec3{box.lo[0] - reach_, box.lo[1] - reach_, box.lo[2] - reach_};
-        auto const along = [&](int d) { return std::floor((e[d] + 2 * reach_) / cell) + 1; };
-        while (along(0) * along(1) * along(2) > most_cells) cell *= 1.25;
-        inverse_ = 1 / cell;
+        lo_ = vec3{box.lo[0] - rim, box.lo[1] - rim, box.lo[2] - rim};
+        auto const along = [&](int d) { return std::floor((e[d] + 2 * rim) / cell_) + 1; };
+        while (along(0) * along(1) * along(2) > most_cells) cell_ *= 1.25;
+        inverse_ = 1 / cell_;
         for (int d = 0; d < 3; ++d) size_[static_cast<std::size_t>(d)] = static_cast<std::size_t>(along(d));
+        // What rounding to float may move a point or a height by.
+        blur_ = static_cast<float>(1e-6 * (std::max({e[0], e[1], e[2]}) + 2 * rim) * inverse_);
     }
 
-    [[nodiscard]] std::size_t place(int d, double x) const noexcept {
+    [[nodiscard]] std::uint32_t place(int d, double x) const noexcept {
         auto const n = static_cast<double>(size_[static_cast<std::size_t>(d)] - 1);
-        return static_cast<std::size_t>(std::clamp(std::floor((x - lo_[d]) * inverse_), 0.0, n));
+        return static_cast<std::uint32_t>(std::clamp((x - lo_[d]) * inverse_, 0.0, n));
     }
     [[nodiscard]] std::size_t cell_of(vec3 const& p) const noexcept {
         std::array<std::size_t, 3> c{};
         for (int d = 0; d < 3; ++d) {
-            double const x = std::floor((p[d] - lo_[d]) * inverse_);
+            double const x = (p[d] - lo_[d]) * inverse_;
             auto const e = static_cast<std::size_t>(d);
             if (!(x >= 0 && x < static_cast<double>(size_[e]))) return outside;
             c[e] = static_cast<std::size_t>(x);
         }
         return c[0] + size_[0] * (c[1] + size_[1] * c[2]);
     }
+
+    /// Cells around a face.
+    struct cell_span {
+        std::array<std::uint32_t, 3> low{};
+        std::array<std::uint32_t, 3> high{};
+    };
+    [[nodiscard]] cell_span span_of(std::array<std::uint32_t, 3> const& t) const noexcept {
+        cell_span s;
+        vec3 const& a = positions_[t[0]];
+        vec3 const& b = positions_[t[1]];
+        vec3 const& c = positions_[t[2]];
+        double const rim = reach_ + slack_;
+        for (int d = 0; d < 3; ++d) {
+            s.low[static_cast<std::size_t>(d)] = place(d, std::min({a[d], b[d], c[d]}) - rim);
+            s.high[static_cast<std::size_t>(d)] = place(d, std::max({a[d], b[d], c[d]}) + rim);
+        }
+        return s;
+    }
+    /// Those of the cells around a face that its plane comes near: what is within reach of a face whose corners have
+    /// moved by the slack is within the sum of both of the face as it was.
     template <class F>
     void for_each_cell(std::uint32_t f, F const& visit) const {
-        box3 box;
-        for (std::uint32_t const v : triangles_[f]) box.include(positions_[v]);
-        std::array<std::size_t, 3> low{};
-        std::array<std::size_t, 3> high{};
-        for (int d = 0; d < 3; ++d) {
-            low[static_cast<std::size_t>(d)] = place(d, box.lo[d] - reach_);
-            high[static_cast<std::size_t>(d)] = place(d, box.hi[d] + reach_);
-        }
-        for (std::size_t z = low[2]; z <= high[2]; ++z) {
-            for (std::size_t y = low[1]; y <= high[1]; ++y) {
-                for (std::size_t x = low[0]; x <= high[0]; ++x) visit(x + size_[0] * (y + size_[1] * z));
+        cell_span const& s = spans_[f];
+        disc const& d = discs_[f];
+        float const rim = static_cast<float>((reach_ + slack_) * inverse_) + 2 * blur_ +
+                          0.5001F * (std::fabs(d.nx) + std::fabs(d.ny) + std::fabs(d.nz));
+        for (std::size_t z = s.low[2]; z <= s.high[2]; ++z) {
+            float const over_z = (static_cast<float>(z) + 0.5F - d.z) * d.nz - d.x * d.nx;
+            for (std::size_t y = s.low[1]; y <= s.high[1]; ++y) {
+                std::size_t const row = size_[0] * (y + size_[1] * z);
+                float const over_y = over_z + (static_cast<float>(y) + 0.5F - d.y) * d.ny;
+                for (std::size_t x = s.low[0]; x <= s.high[0]; ++x) {
+                    float const over = over_y + (static_cast<float>(x) + 0.5F) * d.nx;
+                    if (over <= rim && over >= -rim) visit(row + x);
+                }
             }
         }
     }
@@ -181,12 +297,21 @@ private:
     std::span<vec3 const> positions_{};
     std::span<std::array<std::uint32_t, 3> const> triangles_{};
     double reach_;
+    double slack_ = 0;
+    double cell_ = 1;
     double inverse_ = 1;
+    float blur_ = 0;
     vec3 lo_{0, 0, 0};
     std::array<std::size_t, 3> size_{};
     std::vector<std::uint32_t> begin_{};  ///< cell -> its first place in `faces_`
     std::vector<std::uint32_t> faces_{};  ///< by cell, ascending in each
     std::vector<std::uint32_t> at_{};
+    std::vector<disc> discs_{};           ///< by face
+    std::vector<cell_span> spans_{};      ///< by face
+    std::vector<vec3> base_{};            ///< positions that the cells were filled for
+    std::vector<vec3> last_{};            ///< positions that the discs are of
+    std::vector<std::array<std::uint32_t, 3>> faces_then_{};
+    std::vector<unsigned char> moved_{};
 };
 
 static_assert(fluid_boundary<mesh_boundary>);
