@@ -26,7 +26,7 @@ void add_process_options(CLI::App& c, voxel_arguments& a) {
     c.add_option("--bubble", a.bubbles, "SPEC, repeatable with above=: what curvature is estimated with; default: sphere")->allow_extra_args(false);
     c.add_option("--radius", a.radius, "of bubbles that say none, voxels")->check(between(0.1, 48.0))->capture_default_str();
     c.add_option("--rate", a.rate, "SPEC: decay over the estimate")->capture_default_str();
-    c.add_option("--measure", a.measure, "share: of air in the bubble; excess: what it differs by from one half")->check(CLI::IsMember({"share", "excess"}))->capture_default_str();
+    c.add_option("--measure", a.measure, "share: of air in the bubble; excess: what it differs by from one half; flat: from what flat rock shows")->check(CLI::IsMember({"share", "excess", "flat"}))->capture_default_str();
     c.add_option("--spheroidal", a.spheroidal, "factor of spheroidal weathering")->check(between(0.0, 1e6))->capture_default_str();
     c.add_option("--cavernous", a.cavernous, "factor of cavernous weathering; default: 0, 1 with --schedule")->check(between(0.0, 1e6));
     c.add_option("--schedule", a.schedule, "which acts when, as 17c,1s,2c or 5sc (both); goes round until --steps");

@@ -92,7 +92,8 @@ voxel_session::process voxel_session::make_process(voxel_source const& source) c
 
 voxel_options voxel_session::make_options(voxel_source const& source) {
     voxel_options o;
-    o.measure = a_.measure == "excess" ? curvature_measure::signed_excess : curvature_measure::air_share;
+    if (a_.measure == "excess") o.measure = curvature_measure::signed_excess;
+    if (a_.measure == "flat") o.measure = curvature_measure::flat_excess;
     o.skin_depth = a_.depth;
     o.seed = a_.seed;
     if (a_.colluvium) o.colluvium = repose_rule{.angle = a_.repose, .baseline = static_cast<int>(a_.baseline)};

@@ -258,6 +258,7 @@ try() { expect 0 try "$weather" voxel builtin:hoodoo -o try --resolution 24 --st
 try --bubble ellipsoid:axes=3,3,5 --rate linear --cavernous 0.3
 try --bubble gumdrop:radius=4 --bubble disc:thickness=3,above=0.3 --bubble mixture:shapes=sphere,disc,radii=2,4,above=0.6
 try --rate quartic:scale=2,lowest=0.1,highest=1 --depth 2 --measure excess
+try --rate linear --depth 2 --measure flat --cavernous 1
 try --durability profile:at=0,0.5,1,values=0.01,0.03,0.02,amplitude=0.002,frequency=8
 try --durability layers:values=0.01,0.05,0.02,thickness=0.1
 try --durability grid:path=grid.nrrd,place=fit --noise noise:wavelength=0.2,octaves=2
