@@ -1,0 +1,256 @@
+#!/bin/sh
+# What `weather curvature`, `weather hydraulic` and `weather wrinkles` promise: exit codes, keys of the report, ledgers that
+# add up, equal bytes for equal runs and any number of threads, resuming.
+#   sh tests/tool/weather_mesh.sh PATH/TO/weather EMPTY/FOLDER
+set -u
+weather=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+[ -x "$weather" ] || { echo "no tool at $1"; exit 1; }
+rm -rf "$2"
+mkdir -p "$2"
+cd "$2" || exit 1
+failed=0
+complain() { echo "FAILED: $*"; failed=$((failed + 1)); }
+
+expect() { # code name command...
+    want=$1
+    name=$2
+    shift 2
+    "$@" > "$name.log" 2>&1
+    got=$?
+    [ $got -eq "$want" ] || { complain "$name: exit code $got, expected $want"; cat "$name.log"; }
+}
+says() { grep -q -- "$2" "$1.log" || { complain "$1 does not say '$2'"; cat "$1.log"; }; }
+number() { sed -n "s/^ *\"$2\": \([0-9.eE+-]*\),*$/\1/p" "$1/report.json" | head -1; }
+holds() { awk "BEGIN { exit !($1) }" || complain "$2: $1"; }
+plain() { sed '/"threads"/d; /"seconds"/,/}/d' "$1/report.json" > "$1.plain"; }
+same() { # folders that must hold equal files, reports but for seconds and threads
+    diff -r -x report.json "$1" "$2" > diff.log || { complain "$1 and $2 differ"; cat diff.log; }
+    plain "$1"
+    plain "$2"
+    diff "$1.plain" "$2.plain" > diff.log || { complain "reports of $1 and $2 differ"; cat diff.log; }
+}
+bad() { # command name says options...
+    process=$1
+    name=$2
+    text=$3
+    shift 3
+    expect 2 "$name" "$weather" "$process" builtin:cube:squares=3 -o none "$@"
+    says "$name" "$text"
+}
+
+# usage: 2, naming the option
+expect 2 no_output "$weather" curvature builtin:cube
+expect 2 unknown_option "$weather" hydraulic builtin:cube -o none --unknown 1
+expect 2 bad_builtin "$weather" curvature builtin:moon -o none
+says bad_builtin "cube, sphere, bust, hand, canyon, valley, outcrop"
+bad curvature power power --power 0.5
+bad curvature nan_power power --power nan
+bad curvature step step --step 0
+bad curvature estimator estimator --estimator guess
+bad curvature ball ball --ball -1
+bad curvature direction direction --direction up
+bad curvature durability "--durability soft" --durability soft
+bad curvature hard "--durability 0: is not in" --durability 0
+bad curvature layers "values: one is out of range" --durability layers:values=1,-2
+bad curvature field_key "unknown key 'colour'" --durability noise:colour=3
+bad curvature small_edge small-edge --small-edge 0.9
+bad curvature retries retries --retries 99
+bad curvature up up --up w
+bad curvature format format --format xyz
+bad hydraulic model model --model fire
+bad hydraulic fluid fluid --fluid sand
+bad hydraulic particles particles --particles 0
+bad hydraulic emitter "--emitter 1,2,3: six numbers" --emitter 1,2,3
+bad hydraulic inverted "the box is empty" --emitter 0,0,1,1,1,0
+bad hydraulic velocity "--velocity fast" --velocity fast
+bad hydraulic gravity "--gravity 1,2" --gravity 1,2
+bad hydraulic radius radius --radius 0
+bad hydraulic friction friction --friction -1
+bad hydraulic lifetime lifetime --lifetime nan
+bad hydraulic viscosity viscosity --viscosity -1
+bad hydraulic k "--k -1" --k -1
+bad hydraulic tau_c "--tau-c x" --tau-c x
+bad hydraulic exponent "--a 0" --a 0
+bad hydraulic K "--K -1" --K -1
+bad hydraulic m "--m 0" --m 0
+bad hydraulic influence influence --influence 0
+bad hydraulic refine refine --refine -1
+bad wrinkles nothing "--path, --through or --enlarge"
+bad wrinkles path "--path 1" --path 1
+bad wrinkles path_text "--path 1,x" --path 1,x
+bad wrinkles through "at least two points" --through 0,0,0
+bad wrinkles enlarge "v,radius,strength" --enlarge 1,2
+bad wrinkles wrinkle_radius radius --path 0,1 --radius -1
+bad wrinkles profile profile --path 0,1 --profile flat
+bad wrinkles divisor divisor --path 0,1 --divisor 0
+for process in curvature hydraulic wrinkles; do expect 0 help_$process "$weather" $process --help; done
+
+# bad input: 1, and nothing is made
+for process in curvature hydraulic; do
+    : > plain_file
+    expect 1 below_a_file "$weather" $process builtin:cube -o plain_file/out
+    expect 1 missing "$weather" $process no_such_file.obj -o none
+    says missing no_such_file.obj
+    printf 'v 0 0 0\nv 1 0 0\n' > points.obj
+    expect 1 points "$weather" $process points.obj -o none
+    says points "there is no face"
+    printf 'v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n' > place.obj
+    expect 1 place "$weather" $process place.obj -o none
+done
+expect 1 far_vertex "$weather" wrinkles builtin:cube:squares=3 -o none --path 0,9999
+says far_vertex "vertex 9999"
+[ ! -e none ] || complain "a refused run made its folder"
+
+# curvature: files, report, equal runs and thread counts
+part="--power 1.5 --step 4 --small-edge 0.3 --durability noise:low=0.5,high=3 --map --progress none --snapshots 10 --format obj,ply,stl,vtp"
+rock=builtin:bust:resolution=26
+# shellcheck disable=SC2086
+{
+    expect 0 first "$weather" curvature $rock -o first $part --iterations 40 --checkpoint end1
+    for file in weathered.obj weathered.ply weathered.stl weathered.vtp history.csv map.txt report.json snapshots/curvature.pvd \
+        snapshots/curvature_00000000.vtp snapshots/curvature_00000040.vtp; do
+        [ -s "first/$file" ] || complain "first/$file is missing or empty"
+    done
+    for key in schema version process seed parameters threads stopped repaired mesh bounds iterations vertices faces edges_collapsed \
+        volume_removed largest_wear seconds read weather write; do
+        grep -q "\"$key\":" first/report.json || complain "report.json has no $key"
+    done
+    for channel in curvature wear; do grep -q "Name=\"$channel\"" first/weathered.vtp || complain "weathered.vtp has no $channel"; done
+    grep -q '"schema": "tafoni.weather.curvature/1"' first/report.json || complain "the schema is another"
+    grep -q '"stopped": "finished"' first/report.json || complain "the run did not finish"
+    holds "$(number first edges_collapsed) > 0 && $(number first volume_removed) > 0" first
+    before=$(sed -n 's/^ *"mesh": {//p; s/^ *"vertices": \([0-9]*\),/\1/p' first/report.json | grep . | head -1)
+    [ "$(wc -l < first/map.txt)" = "$before" ] || complain "the map has another length"
+    [ "$(grep -c '^v ' first/weathered.obj)" = "$(tail -1 first/history.csv | cut -d, -f2)" ] || complain "the history counts other vertices"
+    expect 0 again "$weather" curvature $rock -o again $part --iterations 40 --threads 3 --checkpoint end2
+    same first again
+    cmp end1 end2 || complain "checkpoints differ"
+    # resumed runs equal uninterrupted ones
+    expect 0 half "$weather" curvature $rock -o resumed $part --iterations 20 --checkpoint half.bin
+    expect 0 rest "$weather" curvature $rock -o resumed $part --iterations 40 --resume half.bin --checkpoint end3
+    for file in weathered.vtp weathered.obj map.txt snapshots; do
+        diff -r first/$file resumed/$file > diff.log || complain "a resumed run ends with another $file"
+    done
+    cmp end1 end3 || complain "a resumed run ends with another checkpoint"
+    expect 1 other_options "$weather" curvature $rock -o none $part --iterations 40 --check-every 7 --resume half.bin
+    expect 1 other_field "$weather" curvature $rock -o none $part --iterations 40 --seed 5 --resume half.bin
+    expect 1 other_estimator "$weather" curvature $rock -o none $part --iterations 40 --estimator quadric --resume half.bin
+    expect 1 other_input "$weather" curvature builtin:cube -o none $part --iterations 40 --resume half.bin
+    expect 2 too_few "$weather" curvature $rock -o none $part --iterations 3 --resume half.bin
+    says too_few "--iterations 3"
+    head -c 100 half.bin > cut.bin
+    expect 1 truncated "$weather" curvature $rock -o none $part --iterations 40 --resume cut.bin
+    [ ! -e none ] || complain "a refused resume made its folder"
+}
+for option in "--estimator cotangent" "--estimator quadric" "--estimator bubble --ball 0.1" "--direction normal" "--direction blend" \
+    "--durability ramp:low=1,high=3" "--durability layers:values=1,5,fold=0.05" "--keep-topology" "--check-every 2"; do
+    # shellcheck disable=SC2086
+    expect 0 try "$weather" curvature $rock -o try --iterations 4 --progress none --format obj $option
+    cmp -s try/weathered.obj first/snapshots/curvature_00000010.obj && complain "$option: nothing happens"
+done
+expect 0 cube "$weather" curvature builtin:cube:squares=8 -o cube --iterations 60 --progress none
+holds "$(number cube volume_removed) > 0.2" cube
+expect 0 none_at_all "$weather" curvature builtin:cube:squares=8 -o unchanged --iterations 0 --format obj --progress none
+holds "$(number unchanged volume_removed) == 0" unchanged
+
+# Ctrl-C: 130 and a checkpoint that goes on to the same end
+"$weather" curvature builtin:bust:resolution=20 -o stopped --iterations 100000000 --step 1000000 --format obj --progress json 2> stopped.log &
+child=$!
+tries=0
+until grep -q '"weather"' stopped.log 2> /dev/null || [ $tries -gt 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+kill -INT $child
+wait $child
+code=$?
+[ $code -eq 130 ] || { complain "Ctrl-C: exit code $code, expected 130"; tail -3 stopped.log; }
+[ -s stopped/curvature.checkpoint ] || complain "Ctrl-C wrote no checkpoint"
+grep -q '"stopped": "interrupted"' stopped/report.json || complain "the report does not say that it was stopped"
+reached=$(number stopped iterations)
+if [ "$reached" -lt 3000 ]; then
+    end=$((reached + 5))
+    expect 0 gone_on "$weather" curvature builtin:bust:resolution=20 -o stopped --iterations $end --step 1000000 --format obj \
+        --progress none --resume stopped/curvature.checkpoint
+    expect 0 straight "$weather" curvature builtin:bust:resolution=20 -o straight --iterations $end --step 1000000 --format obj --progress none
+    cmp stopped/weathered.obj straight/weathered.obj || complain "going on after Ctrl-C ends differently"
+fi
+
+# hydraulic: the ledger adds up, equal runs and thread counts, both models, both fluids
+ledger() {
+    awk -v e="$(number "$1" eroded)" -v d="$(number "$1" deposited)" -v c="$(number "$1" carried)" -v l="$(number "$1" left)" \
+        'BEGIN { x = e - d - c - l; exit !(e > 0 && x * x <= 1e-18 * e * e) }' || complain "$1: the ledger does not add up"
+    awk -F, 'NR > 1 { x = $5 - $6 - $7 - $8; if (x * x > 1e-18 * $5 * $5) exit 1 }' "$1/history.csv" || complain "$1: a row of the history does not add up"
+}
+flow="builtin:valley:resolution=24 --iterations 60 --snapshots 30 --emitter 0.2,0.35,0.13,0.5,0.65,0.2 --progress none --format obj,vtp"
+# shellcheck disable=SC2086
+for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300"; do
+    set -- $case
+    kind=$1_$2
+    expect 0 "$kind" "$weather" hydraulic $flow -o "$kind" --model "$1" --fluid "$2" --particles "$3"
+    expect 0 "$kind"_3 "$weather" hydraulic $flow -o "$kind"_3 --model "$1" --fluid "$2" --particles "$3" --threads 3
+    same "$kind" "$kind"_3
+    ledger "$kind"
+    for key in schema version process seed parameters gravity emitter radius k tau_c influence keep threads stopped repaired iterations time \
+        particles contacts ledger eroded deposited carried left vertices_added largest_wear seconds read weather write; do
+        grep -q "\"$key\":" "$kind/report.json" || complain "$kind: report.json has no $key"
+    done
+    for channel in curvature wear flow sediment; do
+        grep -q "Name=\"$channel\"" "$kind/weathered.vtp" || complain "$kind: weathered.vtp has no $channel"
+    done
+    [ -s "$kind/snapshots/hydraulic.pvd" ] || complain "$kind: no list of snapshots"
+    cmp -s "$kind/snapshots/hydraulic_00000000.obj" "$kind/weathered.obj" && complain "$kind: nothing was eroded"
+done
+ridge="builtin:bust:resolution=20 --particles 800 --format obj --progress none"
+# shellcheck disable=SC2086
+{
+    expect 0 pour "$weather" hydraulic $ridge -o pour --iterations 120 --seed 1
+    expect 0 other_seed "$weather" hydraulic $ridge -o other_seed --iterations 120 --seed 2
+    cmp -s pour/weathered.obj other_seed/weathered.obj && complain "the seed changes nothing"
+    ledger pour
+    expect 0 fine "$weather" hydraulic $ridge -o fine --iterations 120 --refine 0.03
+    holds "$(number fine vertices_added) > 0" fine
+    expect 0 soft "$weather" hydraulic $ridge -o soft --iterations 120 --k layers:values=0.0001,0.01 --tau-c ramp:low=0,high=9 --a 1.2 --K 2 --m noise:low=0.8,high=1.2 --durability 2
+    ledger soft
+    expect 0 sideways "$weather" hydraulic $ridge -o sideways --iterations 60 --up=-x --emitter 0.4,-0.1,0.3,0.5,0.1,0.8 --velocity=-1,0,0
+    expect 0 still "$weather" hydraulic $ridge -o still --iterations 0
+    holds "$(number still eroded) == 0 && $(number still iterations) == 0" still
+}
+
+# wrinkles: files, a pattern that another mesh wears, both profiles
+cube=builtin:cube:squares=12
+expect 0 fold "$weather" wrinkles $cube -o fold --path 0,70 --radius 0.2 --progress none
+grep -q '"schema": "tafoni.weather.wrinkles/1"' fold/report.json || complain "the schema is another"
+for key in schema process parameters vertices_added volume_before volume_after seconds read weather write paths; do
+    grep -q "\"$key\":" fold/report.json || complain "wrinkles: report.json has no $key"
+done
+holds "$(number fold volume_after) > $(number fold volume_before) && $(number fold vertices_added) > 0" fold
+expect 0 crack "$weather" wrinkles $cube -o crack --through 0.2,0.2,1,0.5,0.6,1,0.8,0.4,1 --profile groove --times 3 --progress none --threads 2
+expect 0 crack1 "$weather" wrinkles $cube -o crack1 --through 0.2,0.2,1,0.5,0.6,1,0.8,0.4,1 --profile groove --times 3 --progress none
+same crack crack1
+holds "$(number crack volume_after) < $(number crack volume_before)" crack
+expect 0 swell "$weather" wrinkles $cube -o swell --enlarge 100,0.3,2 --enlarge 30,0.2,-1 --progress none
+expect 0 worn "$weather" wrinkles $cube -o worn --path 0,70 --radius 0.2 --wear-on builtin:sphere:squares=12 --progress none
+[ -s worn/worn_0.obj ] || complain "no other mesh wears the wrinkles"
+expect 1 other_shape "$weather" wrinkles $cube -o none --path 0,70 --wear-on builtin:cube:squares=11
+
+# every kind of input: open, inside out, polygons, corners twice, vertices without faces, terrain with gaps
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n' > inside_out.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nv 2 0 0\nv 2 1 0.1\nv 9 9 9\nf 1 2 3 4\nf 2 5 6 3\nf 1 1 2\n' > sheet.obj
+printf 'ncols 5\nnrows 4\nxllcorner 400000\nyllcorner 2000000\ncellsize 10\nNODATA_value -9999\n' > hill.asc
+printf '5 6 9 8 7\n7 12 20 11 8\n6 14 25 -9999 7\n5 8 9 7 6\n' >> hill.asc
+for file in inside_out.obj sheet.obj hill.asc; do
+    for process in curvature hydraulic; do
+        expect 0 any_input "$weather" $process $file -o any_input --iterations 12 --progress none --format obj
+        grep -qi nan any_input/weathered.obj && complain "$process of $file: a number is none"
+    done
+done
+expect 0 turned "$weather" curvature inside_out.obj -o turned --iterations 1 --progress none
+[ "$(number turned turned_faces)" = 4 ] || complain "turned faces are not counted"
+expect 0 open "$weather" curvature hill.asc -o open --iterations 5 --progress none --format obj
+grep -q '"terrain": true' open/report.json || complain "terrain is not named as such"
+holds "$(number open open_edges) > 0 && $(number open largest_wear) > 0" open
+# a folder that is used again holds nothing of the older run, and keeps what others put there
+: > open/notes.txt
+expect 0 reused "$weather" curvature hill.asc -o open --iterations 2 --progress none --format ply
+[ -e open/notes.txt ] && [ ! -e open/weathered.obj ] || complain "a folder is not used again as promised"
+
+[ $failed -eq 0 ] && echo "all passed"
+exit $failed
