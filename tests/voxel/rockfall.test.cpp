@@ -604,6 +604,19 @@ TEST_CASE("what it costs depends on what is removed and not on the size of the r
     CHECK(spent[2].faces_passed < spent[1].faces_passed + 64);
 }
 
+TEST_CASE("pieces smaller than a brick cost what they measure", "[rockfall]") {
+    sparse_grid g({.size = {64, 64, 64}}, up_axis::plus_z, {{border_kind::air, border_kind::air, border_kind::air, border_kind::air, border_kind::rock, border_kind::air}});
+    for (std::size_t b = 0; b < g.brick_count(); ++b) {
+        g.fill_brick(b, [](voxel v) { return (v.x + v.y + v.z) % 2 == 0 ? voxel_state::rock : voxel_state::air; });
+    }
+    rockfall falls;
+    std::vector<voxel_change> changes;
+    CHECK(falls.fall(g, {}, 0, inline_executor{}, changes).size() == 63 * 64 * 64 / 2);
+    CHECK(g.count(voxel_plane::rock) == 64 * 64 / 2);
+    // Single voxels: only those beside another brick, on two sides of three planes, are asked what lies across.
+    CHECK(falls.effort().faces_passed <= 3 * 2 * 64 * 64 / 2);
+}
+
 TEST_CASE("rockfall falls the same on any number of threads", "[rockfall][threads]") {
     rockfall_options const options{.joints = random_cracks(5, 6, 20), .friction_angle = 20};
     auto const run = [&](auto const& threads) {

@@ -32,6 +32,9 @@ public:
     struct piece {
         std::uint32_t voxels = 0;
         bool ground = false;
+        std::uint8_t faces = 0;            ///< of the brick that it touches: bit 2 axis + side
+        std::uint16_t first_column = 0;
+        std::uint16_t last_column = 0;
         std::uint32_t epoch = 0;  ///< of the search that saw it last
         std::uint32_t group = 0;  ///< what that search put it in
     };
@@ -79,15 +82,22 @@ public:
         first_[1024] = static_cast<std::uint16_t>(runs_.size());
         pieces.clear();
         // A run's root never comes after it, so one pass in order turns roots into numbers.
-        for (std::size_t r = 0; r < runs_.size(); ++r) {
-            std::size_t const up = runs_[r].piece;
-            if (up == r) {
-                runs_[r].piece = static_cast<std::uint16_t>(pieces.size());
-                pieces.emplace_back();
-            } else {
-                runs_[r].piece = runs_[up].piece;
+        for (std::size_t c = 0; c < 1024; ++c) {
+            std::uint32_t const sides = ((c & 31) == 0 ? 1U : 0U) | ((c & 31) == 31 ? 2U : 0U) | (c < 32 ? 4U : 0U) | (c >= 992 ? 8U : 0U);
+            for (std::size_t r = first_[c]; r < first_[c + 1]; ++r) {
+                std::size_t const up = runs_[r].piece;
+                if (up == r) {
+                    runs_[r].piece = static_cast<std::uint16_t>(pieces.size());
+                    pieces.emplace_back();
+                    pieces.back().first_column = static_cast<std::uint16_t>(c);
+                } else {
+                    runs_[r].piece = runs_[up].piece;
+                }
+                piece& p = pieces[runs_[r].piece];
+                p.voxels += static_cast<std::uint32_t>(runs_[r].hi - runs_[r].lo + 1);
+                p.faces = static_cast<std::uint8_t>(p.faces | sides | (runs_[r].lo == 0 ? 16U : 0U) | (runs_[r].hi == 31 ? 32U : 0U));
+                p.last_column = static_cast<std::uint16_t>(c);
             }
-            pieces[runs_[r].piece].voxels += static_cast<std::uint32_t>(runs_[r].hi - runs_[r].lo + 1);
         }
         if (ground.may_hold(grid, brick)) {
             for (std::size_t c = 0; c < 1024; ++c) {

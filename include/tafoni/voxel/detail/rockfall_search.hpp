@@ -150,7 +150,8 @@ public:
     /// Calls f(voxel) for every voxel of a piece.
     template <class F>
     void for_voxels(sparse_grid const& grid, rock_node n, F const& f) {
-        for (std::size_t c = 0; c < 1024; ++c) {
+        auto const [begin, end] = columns(grid, n);
+        for (std::size_t c = begin; c < end; ++c) {
             for (std::uint32_t left = bits(grid, n, c); left != 0; left &= left - 1) {
                 f(voxel_at(grid, n.brick, c, std::countr_zero(left)));
             }
@@ -161,7 +162,8 @@ public:
     void for_contacts(sparse_grid const& grid, rock_node n, F const& f) {
         if (is_uniform(grid, n.brick) && !has_cuts_below(grid, n.brick)) return;
         std::size_t const under = beyond(grid, n.brick, 4);
-        for (std::size_t c = 0; c < 1024; ++c) {
+        auto const [begin, end] = columns(grid, n);
+        for (std::size_t c = begin; c < end; ++c) {
             std::uint32_t const mine = bits(grid, n, c);
             if (mine == 0) continue;
             std::uint32_t cut_above = cuts_.word(2, n.brick, c) & grid.plane_word(voxel_plane::rock, n.brick, c);
@@ -223,6 +225,15 @@ private:
         auto const& p = fresh(grid, n.brick).pieces[n.piece];
         return {p.epoch, p.group};
     }
+    /// Those that a piece is in are among begin .. end - 1.
+    struct column_range {
+        std::size_t begin, end;
+    };
+    [[nodiscard]] column_range columns(sparse_grid const& grid, rock_node n) {
+        if (is_uniform(grid, n.brick)) return {0, 1024};
+        auto const& p = fresh(grid, n.brick).pieces[n.piece];
+        return {p.first_column, std::size_t{p.last_column} + 1};
+    }
     [[nodiscard]] std::uint32_t bits(sparse_grid const& grid, rock_node n, std::size_t c) {
         return is_uniform(grid, n.brick) ? grid.inside_word(n.brick, c) : fresh(grid, n.brick).bits(c, n.piece);
     }
@@ -232,6 +243,7 @@ private:
         group& into = groups_[g];
         into.nodes.push_back(n);
         bool held = false;
+        unsigned faces = 63;
         if (is_uniform(grid, n.brick)) {
             uniform_[n.brick] = {epoch_, g};
             std::array<std::size_t, 3> edges{};
@@ -252,12 +264,14 @@ private:
             p.group = g;
             into.voxels += p.voxels;
             held = p.ground;
+            faces = p.faces;
         }
         if (held) {
             into.is = state::held;
             return;
         }
         for (std::uint8_t face = 0; face < 6; ++face) {
+            if ((faces >> face & 1U) == 0) continue;
             std::size_t const there = beyond(grid, n.brick, face);
             if (there == nowhere || grid.is_air_brick(there)) continue;
             // Solid bricks cost least to cross, bricks without fresh labels most.
@@ -298,6 +312,7 @@ private:
         std::size_t const lower = up ? from.brick : there;
         if (!solid) fresh(grid, from.brick);
         if (!solid_there) fresh(grid, there);
+        auto const [begin, end] = columns(grid, from);
         rock_labels const* const mine = solid ? nullptr : &labels_[slot_[from.brick] - 1];
         rock_labels const* const theirs = solid_there ? nullptr : &labels_[slot_[there] - 1];
         auto const own = [&](std::size_t c) {
@@ -316,12 +331,13 @@ private:
             for (std::size_t i = 0; i < 32; ++i) {
                 std::size_t const low_side = i * along;
                 std::size_t const c = low_side + (up ? far_side : 0);
+                if (c < begin || c >= end) continue;
                 std::size_t const d = low_side + (up ? 0 : far_side);
                 reach(d, own(c) & ~cuts_.word(axis, lower, low_side + far_side));
             }
             return;
         }
-        for (std::size_t c = 0; c < 1024; ++c) {
+        for (std::size_t c = begin; c < end; ++c) {
             if (cuts_.word(2, lower, c) >> 31 != 0) continue;
             std::uint32_t const bit = up ? own(c) >> 31 : (own(c) & 1U) << 31;
             reach(c, bit);
