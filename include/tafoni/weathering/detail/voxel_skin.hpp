@@ -31,15 +31,25 @@ struct voxel_skin {
     double clock = 0;  ///< time within the step that `left` belongs to; of events only, else 0
 
     [[nodiscard]] std::size_t size() const noexcept { return position.size(); }
-    void clear() noexcept {
-        position.clear();
-        bubble.clear();
-        air.clear();
-        durability.clear();
-        left[0].clear();
-        left[1].clear();
-        covered.clear();
-        covered_left.clear();
+    /// What is new is left to be written.
+    void resize(std::size_t n) {
+        position.resize(n);
+        bubble.resize(n);
+        air.resize(n);
+        durability.resize(n);
+        left[0].resize(n);
+        left[1].resize(n);
+    }
+    /// Takes n records of another skin over, with what is left of them by `left_of`.
+    void copy(voxel_skin const& from, std::vector<double> const& left_of, std::size_t first, std::size_t to,
+              std::size_t n) noexcept {
+        for (std::size_t i = 0; i < n; ++i) {
+            position[to + i] = from.position[first + i];
+            bubble[to + i] = from.bubble[first + i];
+            air[to + i] = from.air[first + i];
+            durability[to + i] = from.durability[first + i];
+            left[0][to + i] = left_of[first + i];
+        }
     }
     [[nodiscard]] skin_view view() noexcept { return {position, bubble, air}; }
     /// Index of a position, or size(). O(log size).

@@ -76,14 +76,11 @@ public:
         for (std::size_t b = 0; b < grid.brick_count(); ++b) {
             if (slot_of_[b] != none || (!grid.is_air_brick(b) && !buried(grid, b))) touch(b);
         }
-        near_.resize(std::max(near_.size(), touched_.size()));
-        for (std::size_t k = 0; k < touched_.size(); ++k) near_[k].clear();
     }
 
     /// Bricks whose skin or counts the changes may alter: within `depth` of them all, within `reach` those with skin.
     void touch_changed(sparse_grid const& grid, std::span<voxel_change const> changes, int depth, int reach) {
         start_touching();
-        index_.resize(slot_of_.size(), 0);
         for (voxel_change const& c : changes) {
             bool const inner = within(c.at.x, reach) && within(c.at.y, reach) && within(c.at.z, reach);
             if (inner) {
@@ -94,13 +91,14 @@ public:
                 if (slot_of_[b] != none || close(c.at, corner, depth)) note(b, c);
             });
         }
+        std::sort(touched_.begin(), touched_.end());  // so that threads meet the bricks that they met before
     }
 
     /// Rebuilds aside what was touched. `ask(centre)` answers the bubble and the durability of new skin.
     template <class Ask, executor Executor>
     void rebuild(sparse_grid const& grid, std::span<bubble_stencil const> stencils, int depth, Ask const& ask, basis from,
                  Executor const& threads) {
-        if (fresh_.size() < touched_.size()) fresh_.resize(touched_.size());
+        if (fresh_.size() < skins_.size()) fresh_.resize(skins_.size());
         threads.for_blocks(touched_.size(), 1, [&](std::size_t begin, std::size_t end) {
             auto const mine = scratch_.take();
             for (std::size_t k = begin; k < end; ++k) rebuild_brick(grid, stencils, depth, ask, from, k, *mine);
@@ -112,8 +110,9 @@ public:
         std::ptrdiff_t grown = 0;
         for (std::size_t k = 0; k < touched_.size(); ++k) {
             voxel_skin& skin = skins_[touched_[k]];
-            grown += static_cast<std::ptrdiff_t>(fresh_[k].size()) - static_cast<std::ptrdiff_t>(skin.size());
-            std::swap(skin, fresh_[k]);
+            voxel_skin& fresh = fresh_[touched_[k]];
+            grown += static_cast<std::ptrdiff_t>(fresh.size()) - static_cast<std::ptrdiff_t>(skin.size());
+            std::swap(skin, fresh);
         }
         return grown;
     }
@@ -128,6 +127,8 @@ private:
         air_counter counter{};
         brick_bits skin{};
         brick_bits changed{};
+        brick_bits known{};    // skin as it was
+        brick_bits special{};  // changed or covered
         std::vector<std::uint32_t> added{};
         std::vector<brick_position> position{};
         std::vector<std::uint16_t> bubble{};
@@ -171,93 +172,109 @@ private:
         }
         touched_.clear();
     }
-    /// Index of the brick among the touched.
     void touch(std::size_t b) {
         if (stamp_[b] == stamp_now_) return;
         (void)of_brick(b);
+        if (near_.size() < skins_.size()) near_.resize(skins_.size());
+        near_[slot_of_[b]].clear();
         touched_.push_back(slot_of_[b]);
         stamp_[b] = stamp_now_;
     }
     void note(std::size_t b, voxel_change const& c) {
-        if (stamp_[b] != stamp_now_) {
-            touch(b);
-            index_[b] = static_cast<std::uint32_t>(touched_.size() - 1);
-            if (near_.size() < touched_.size()) near_.emplace_back();
-            near_[index_[b]].clear();
-        }
-        near_[index_[b]].push_back(c);
+        touch(b);
+        near_[slot_of_[b]].push_back(c);
+    }
+
+    /// In vectors also where the CPU is not known to count bits.
+    static std::uint32_t bits_in(std::uint32_t w) noexcept {
+        w -= w >> 1 & 0x55555555u;
+        w = (w & 0x33333333u) + (w >> 2 & 0x33333333u);
+        w = (w + (w >> 4)) & 0x0F0F0F0Fu;
+        w += w >> 8;
+        return (w + (w >> 16)) & 63u;
     }
 
     template <class Ask>
     void rebuild_brick(sparse_grid const& grid, std::span<bubble_stencil const> stencils, int depth, Ask const& ask,
                        basis basis_, std::size_t k, scratch& my) {
-        std::size_t const brick = bricks_[touched_[k]];
-        voxel_skin const& old = skins_[touched_[k]];
-        voxel_skin& fresh = fresh_[k];
-        fresh.clear();
+        std::size_t const slot = touched_[k];
+        std::size_t const brick = bricks_[slot];
+        voxel_skin const& old = skins_[slot];
+        voxel_skin& fresh = fresh_[slot];
+        std::vector<voxel_change> const& changes = near_[slot];
         fresh.now = 0;
         fresh.clock = old.clock;
+        fresh.covered.clear();
+        fresh.covered_left.clear();
         std::vector<double> const& left_of = old.left[basis_ == basis::next ? old.now ^ 1u : old.now];
         find_skin(grid, brick, depth, my.window, my.skin);
+        std::size_t size = 0;
+        for (std::uint32_t const word : my.skin) size += bits_in(word);
+        fresh.resize(size);
         voxel const corner = grid.brick_corner(brick);
         my.changed.fill(0);
-        for (voxel_change const& c : near_[k]) {
+        for (voxel_change const& c : changes) {
             if (!close(c.at, corner, 0)) continue;
             brick_position const p = position_of(c.at);
             my.changed[p >> 5] |= std::uint32_t{1} << (p & 31);
         }
+        my.known.fill(0);
+        for (brick_position const p : old.position) my.known[p >> 5] |= std::uint32_t{1} << (p & 31);
+        my.special = my.changed;
+        for (brick_position const p : old.covered) my.special[p >> 5] |= std::uint32_t{1} << (p & 31);
         auto const same = [&my](std::uint32_t p) { return (my.changed[p >> 5] >> (p & 31) & 1) == 0; };
-        auto const cover = [&](brick_position p, double left) {
+        auto const cover = [&](std::uint32_t p, double left) {
             if (!same(p) || !(left < 100)) return;
-            fresh.covered.push_back(p);
+            fresh.covered.push_back(static_cast<brick_position>(p));
             fresh.covered_left.push_back(left);
         };
         my.added.clear();
-        std::size_t i = 0;
-        std::size_t j = 0;
-        auto const pass_until = [&](std::uint32_t p) {  // known before, no skin now
-            for (;;) {
-                bool const a = i < old.size() && old.position[i] < p;
-                bool const b = j < old.covered.size() && old.covered[j] < p;
-                if (!a && !b) return;
-                if (a && (!b || old.position[i] < old.covered[j])) {
-                    cover(old.position[i], left_of[i]);
-                    ++i;
-                } else {
-                    cover(old.covered[j], old.covered_left[j]);
-                    ++j;
-                }
+        std::size_t i = 0;  // of the old records
+        std::size_t j = 0;  // of the old covered ones
+        std::size_t o = 0;  // of the fresh records
+        bool const anew = basis_ == basis::replaced;
+        for (std::uint32_t c = 0; c < 1024;) {
+            std::uint32_t const first = c;  // columns in which nothing has happened are copied together
+            while (c < 1024 && ((my.skin[c] ^ my.known[c]) | my.special[c]) == 0 && !anew) ++c;
+            if (c != first) {
+                std::size_t const from = i;
+                while (i < old.size() && old.position[i] < 32 * c) ++i;
+                fresh.copy(old, left_of, from, o, i - from);
+                o += i - from;
+                continue;
             }
-        };
-        for (std::uint32_t c = 0; c < 1024; ++c) {
-            for (std::uint32_t bits = my.skin[c]; bits != 0; bits &= bits - 1) {
-                std::uint32_t const p = 32 * c + static_cast<std::uint32_t>(std::countr_zero(bits));
-                pass_until(p);
-                bool const known = i < old.size() && old.position[i] == p;
+            std::uint32_t const skin = my.skin[c];
+            for (std::uint32_t bits = skin | my.known[c] | my.special[c]; bits != 0; bits &= bits - 1) {
+                auto const z = static_cast<std::uint32_t>(std::countr_zero(bits));
+                std::uint32_t const p = 32 * c + z;
+                bool const known = (my.known[c] >> z & 1) != 0;
                 bool const was_covered = j < old.covered.size() && old.covered[j] == p;
                 double left = 100;
                 if (same(p) && known) left = left_of[i];
                 if (same(p) && was_covered) left = old.covered_left[j];
-                fresh.position.push_back(static_cast<brick_position>(p));
-                fresh.left[0].push_back(left);
-                if (known && basis_ != basis::replaced) {
-                    fresh.bubble.push_back(old.bubble[i]);
-                    fresh.durability.push_back(old.durability[i]);
-                    fresh.air.push_back(old.air[i]);
+                if ((skin >> z & 1) == 0) {
+                    cover(p, left);
+                } else if (known && !anew) {
+                    fresh.position[o] = static_cast<brick_position>(p);
+                    fresh.left[0][o] = left;
+                    fresh.bubble[o] = old.bubble[i];
+                    fresh.durability[o] = old.durability[i];
+                    fresh.air[o++] = old.air[i];
                 } else {
                     auto const [bubble, durability] = ask(grid.centre(at_position(corner, static_cast<brick_position>(p))));
-                    fresh.bubble.push_back(bubble);
-                    fresh.durability.push_back(durability);
-                    fresh.air.push_back(0);
-                    my.added.push_back(static_cast<std::uint32_t>(fresh.size() - 1));
+                    fresh.position[o] = static_cast<brick_position>(p);
+                    fresh.left[0][o] = left;
+                    fresh.bubble[o] = bubble;
+                    fresh.durability[o] = durability;
+                    fresh.air[o] = 0;
+                    my.added.push_back(static_cast<std::uint32_t>(o++));
                 }
                 i += known ? 1 : 0;
                 j += was_covered ? 1 : 0;
             }
+            ++c;
         }
-        pass_until(32768);
-        fresh.left[1].resize(fresh.size());
-        count(grid, brick, stencils, near_[k], fresh, my);
+        count(grid, brick, stencils, changes, fresh, my);
     }
 
     /// The counts of what was skin before are brought up to date by the changes, or all are made anew.
@@ -284,10 +301,9 @@ private:
     std::uint32_t stamp_now_ = 0;
     std::vector<std::size_t> bricks_{};  ///< by slot
     std::vector<voxel_skin> skins_{};
-    std::vector<std::uint32_t> touched_{};                ///< slots
-    std::vector<std::uint32_t> index_{};                  ///< by brick: place among the touched
-    std::vector<std::vector<voxel_change>> near_{};       ///< by place among the touched
-    std::vector<voxel_skin> fresh_{};                     ///< likewise
+    std::vector<std::uint32_t> touched_{};                ///< slots, ascending but by touch_all
+    std::vector<std::vector<voxel_change>> near_{};       ///< by slot: what the touched ones have to look at
+    std::vector<voxel_skin> fresh_{};                     ///< by slot
     scratch_pool<scratch> scratch_{};
 };
 
