@@ -21,7 +21,9 @@ struct voxel_options {
     int skin_depth = 1;  ///< 1: solid voxels with air beside one of their six sides; 2: their neighbours as well
     up_axis up = up_axis::plus_z;
     grid_border border{};  ///< what bubbles see beyond the sides
-    std::optional<repose_rule> colluvium{};      ///< set: weathered rock becomes colluvium; else it vanishes
+    /// Set: weathered rock becomes colluvium; else it vanishes. Colluvium that lies in the grid at the start, steep or in
+    /// the air, stays until something opens beside it.
+    std::optional<repose_rule> colluvium{};
     std::optional<rockfall_options> rockfall{};  ///< set: rock that loses its hold falls
     std::uint64_t seed = 0;
 

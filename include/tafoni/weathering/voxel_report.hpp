@@ -51,7 +51,7 @@ struct voxel_schedule {
     std::uint64_t snapshot_every = 0;  ///< calls `on_snapshot` when the number of steps is a multiple; 0 never
     std::function<step_control(std::uint64_t steps)> on_snapshot{};  ///< `stop` ends the run after this step
 
-    /// Steps in all phases, at most 2^63.
+    /// Steps in all phases; `validate` asks for 2^62 at most.
     [[nodiscard]] std::uint64_t steps() const noexcept {
         std::uint64_t sum = 0;
         for (voxel_phase const& p : phases) sum += p.steps;

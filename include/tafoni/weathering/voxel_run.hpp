@@ -24,7 +24,7 @@
 
 namespace tafoni {
 
-/// A voxel of the skin, as a run sees it.
+/// A voxel of the skin, as a run sees it. To be asked about before the run goes on or its policies are replaced.
 struct skin_voxel {
     voxel at{};  ///< turned axes
     voxel_state state = voxel_state::rock;
@@ -42,8 +42,8 @@ struct skin_voxel {
 /// What a grain covers keeps its decimation and goes on when it is bare again.
 /// The state depends on the grid, the policies and the options only, never on threads; n steps and then m are n + m.
 ///
-/// When anything throws (a policy, an observer, the allocator), the state is that after the last complete
-/// step and the run can go on.
+/// When anything throws (a policy, an observer, the allocator), the state is that after the last complete step (with
+/// `voxel_clock::events`: the last complete event; the next step ends that one) and the run can go on.
 template <class Process = voxel_weathering<>>
 class voxel_run {
 public:
