@@ -113,9 +113,7 @@ struct bubble_ratio {
             patch found(s.positions.size(), s.triangles.size());
             for (std::size_t v = begin; v < end; ++v) mean[v] = at(s, normal[v], static_cast<std::uint32_t>(v), r, found);
         });
-        for (std::size_t v = 0; v < mean.size(); ++v) {
-            if (s.rings->is_border(v)) mean[v] = detail::mean_of_inner_neighbors(s, mean, v);
-        }
+        detail::fill_border(s, mean, executor);
     }
 
     /// \throws invalid_input  if `radius` is negative or not finite.

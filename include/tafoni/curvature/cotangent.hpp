@@ -30,21 +30,16 @@ struct laplacian_sum {
 };
 
 struct face_cotangents {
+    struct kept {
+        std::array<double, 3> area;
+        std::array<double, 3> cot;
+    };
     triangle_sides sides{};
     vec3 normal{0, 0, 0};
     std::array<double, 3> area{};
     std::array<double, 3> cot{};
-    bool valid = false;
 
-    face_cotangents() = default;
-    face_cotangents(surface_view const& s, std::size_t f) noexcept : sides(s, f) {
-        valid = sides.valid;
-        if (!valid) return;
-        normal = cross(sides.a, sides.b);
-        double const inverse = 1 / std::sqrt(sides.det);
-        cot = {sides.ab * inverse, (sides.aa - sides.ab) * inverse, (sides.bb - sides.ab) * inverse};
-        area = sides.corner_areas();
-    }
+    [[nodiscard]] kept part() const noexcept { return {area, cot}; }
     [[nodiscard]] laplacian_sum corner(std::size_t k) const noexcept {
         // Side a leads from corner 0 to 1 and lies opposite to corner 2, b from 0 to 2 opposite to 1.
         vec3 const& a = sides.a;
@@ -60,6 +55,28 @@ struct face_cotangents {
     }
 };
 
+struct faces_cotangents {
+    surface_view const& surface;
+
+    [[nodiscard]] face_cotangents face(std::size_t f) const noexcept {
+        triangle_sides const t(surface, f);
+        if (!t.valid) return {};
+        double const inverse = 1 / std::sqrt(t.det);
+        return {t, cross(t.a, t.b), t.corner_areas(),
+                {t.ab * inverse, (t.aa - t.ab) * inverse, (t.bb - t.ab) * inverse}};
+    }
+    [[nodiscard]] face_cotangents face(std::size_t f, face_cotangents::kept const& k) const noexcept {
+        face_cotangents out{.sides = {}, .area = k.area, .cot = k.cot};
+        if (k.area[0] == 0 && k.area[1] == 0 && k.area[2] == 0) return out;
+        auto const& t = surface.triangles[f];
+        vec3 const& p = surface.positions[t[0]];
+        out.sides.a = vec3{surface.positions[t[1]] - p};
+        out.sides.b = vec3{surface.positions[t[2]] - p};
+        out.normal = cross(out.sides.a, out.sides.b);
+        return out;
+    }
+};
+
 }  // namespace detail
 
 /// H = 1/(4 A) n . sum over neighbours of (cot alpha + cot beta)(x_i - x_j), A the mixed Voronoi area
@@ -70,21 +87,17 @@ struct face_cotangents {
 /// small error that refinement does not remove. At the border of an open mesh the mean of the inner
 /// neighbours' values, or 0. Models `curvature_estimator`.
 struct cotangent {
-    /// O(vertices + faces); 56 bytes of scratch memory per vertex, and 180 per face with several threads.
+    /// O(vertices + faces); 56 bytes of scratch memory per vertex, or 48 per face with several threads.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
-        std::vector<detail::laplacian_sum> sums(s.positions.size());
+        auto sums = detail::corner_scratch<detail::laplacian_sum>(s, executor);
         detail::sum_corners(
-            s, std::span<detail::laplacian_sum>(sums), detail::laplacian_sum{},
-            [&](std::size_t f) { return detail::face_cotangents(s, f); }, executor);
-        for (std::size_t v = 0; v < mean.size(); ++v) {
-            detail::laplacian_sum const& sum = sums[v];
-            double const scale = length(sum.normal) * sum.area;
-            mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges, sum.normal) / scale) : 0.0;
-        }
-        for (std::size_t v = 0; v < mean.size(); ++v) {
-            if (s.rings->is_border(v)) mean[v] = detail::mean_of_inner_neighbors(s, mean, v);
-        }
+            s, std::span<detail::laplacian_sum>(sums), detail::laplacian_sum{}, detail::faces_cotangents{s}, executor,
+            [&](std::size_t v, detail::laplacian_sum const& sum) {
+                double const scale = length(sum.normal) * sum.area;
+                mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges, sum.normal) / scale) : 0.0;
+            });
+        detail::fill_border(s, mean, executor);
     }
 };
 

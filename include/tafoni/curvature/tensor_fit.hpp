@@ -35,21 +35,26 @@ struct weighted_mean {
 struct face_mean_curvature {
     double twice_mean = 0;
     std::array<double, 3> area{};
-    bool valid = false;
 
-    face_mean_curvature() = default;
-    face_mean_curvature(surface_view const& s, std::span<vec3 const> normal, std::size_t f) noexcept {
-        triangle_sides const t(s, f);
-        valid = t.valid;
-        if (!valid) return;
-        auto const& corners = s.triangles[f];
+    [[nodiscard]] weighted_mean corner(std::size_t k) const noexcept { return {twice_mean * area[k], area[k]}; }
+    [[nodiscard]] face_mean_curvature part() const noexcept { return *this; }
+};
+
+struct face_mean_curvatures {
+    surface_view const& surface;
+    std::span<vec3 const> normal;
+
+    [[nodiscard]] face_mean_curvature face(std::size_t f) const noexcept {
+        triangle_sides const t(surface, f);
+        if (!t.valid) return {};
+        auto const& corners = surface.triangles[f];
         vec3 const& n = normal[corners[0]];
         vec3 const da{normal[corners[1]] - n};
         vec3 const db{normal[corners[2]] - n};
-        twice_mean = (t.bb * dot(t.a, da) + t.aa * dot(t.b, db) - t.ab * (dot(t.a, db) + dot(t.b, da))) / t.det;
-        area = t.corner_areas();
+        return {(t.bb * dot(t.a, da) + t.aa * dot(t.b, db) - t.ab * (dot(t.a, db) + dot(t.b, da))) / t.det,
+                t.corner_areas()};
     }
-    [[nodiscard]] weighted_mean corner(std::size_t k) const noexcept { return {twice_mean * area[k], area[k]}; }
+    [[nodiscard]] face_mean_curvature const& face(std::size_t, face_mean_curvature const& m) const noexcept { return m; }
 };
 
 }  // namespace detail
@@ -62,16 +67,17 @@ struct face_mean_curvature {
 /// below about 1e-10 do not count. Fast; on irregular meshes as noisy as every method of one ring: see the
 /// table in curvature/README.md. Models `curvature_estimator`.
 struct tensor_fit {
-    /// O(vertices + faces); 40 bytes of scratch memory per vertex, and 100 per face with several threads.
+    /// O(vertices + faces); 40 bytes of scratch memory per vertex, or 24 and 48 per face with several threads.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         std::vector<vec3> normal(s.positions.size());
         vertex_normals(s, normal, executor);
-        std::vector<detail::weighted_mean> sums(s.positions.size());
+        auto sums = detail::corner_scratch<detail::weighted_mean>(s, executor);
         detail::sum_corners(
-            s, std::span<detail::weighted_mean>(sums), detail::weighted_mean{},
-            [&](std::size_t f) { return detail::face_mean_curvature(s, normal, f); }, executor);
-        for (std::size_t v = 0; v < mean.size(); ++v) mean[v] = sums[v].weight > 0 ? 0.5 * (sums[v].sum / sums[v].weight) : 0.0;
+            s, std::span<detail::weighted_mean>(sums), detail::weighted_mean{}, detail::face_mean_curvatures{s, normal},
+            executor, [&](std::size_t v, detail::weighted_mean const& at) {
+                mean[v] = at.weight > 0 ? 0.5 * (at.sum / at.weight) : 0.0;
+            });
     }
 };
 

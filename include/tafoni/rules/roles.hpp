@@ -28,6 +28,18 @@ struct refused_part {
     double damage(auto const&...) const;
     double break_chance(auto const&...) const;
     falling decide(auto const&...) const;
+    vec3 direction(auto const&...) const;
+};
+
+/// What stands in for a role's part: the role's own `refused` where `refused_part` would not fit.
+template <class Role>
+struct refused_as {
+    using type = refused_part;
+};
+template <class Role>
+    requires requires { typename Role::refused; }
+struct refused_as<Role> {
+    using type = typename Role::refused;
 };
 
 /// A member of a bundle: what it must model, and what it is when left out.
@@ -125,7 +137,7 @@ auto check_parts() {
 /// The type of member number `Member` of a bundle that is made from `Parts`.
 template <class Members, std::size_t Member, class Checked, class... Parts>
 struct pick_part {
-    using type = refused_part;
+    using type = typename refused_as<typename std::tuple_element_t<Member, typename Members::list>::role>::type;
 };
 
 template <class Members, std::size_t Member, class... Parts>

@@ -4,6 +4,8 @@
 #define TAFONI_TESTING_ARCHETYPES_HPP
 
 #include <tafoni/core/executor.hpp>
+#include <tafoni/curvature/concepts.hpp>
+#include <tafoni/curvature/displacement.hpp>
 #include <tafoni/decomposition/concepts.hpp>
 #include <tafoni/field/concepts.hpp>
 #include <tafoni/graph/concepts.hpp>
@@ -13,6 +15,7 @@
 #include <tafoni/testing/structure_archetypes.hpp>
 #include <tafoni/testing/voxel_archetypes.hpp>
 
+#include <span>
 #include <vector>
 
 namespace tafoni::archetypes {
@@ -63,6 +66,17 @@ struct field : detail::least {
     [[nodiscard]] double operator()(vec3 const&) const { return 0.5; }
 };
 
+struct estimator : detail::least {
+    using least::least;
+    void operator()(surface_view const&, std::span<double> mean, tafoni::executor auto const&) const {
+        for (double& h : mean) h = 0.5;
+    }
+};
+struct heading : detail::least {
+    using least::least;
+    [[nodiscard]] vec3 direction(wear_point const&) const { return vec3{0, 0, -1}; }
+};
+
 /// Runs blocks in order; nothing but the two required members.
 struct executor : detail::least {
     using least::least;
@@ -108,6 +122,7 @@ struct network {
 static_assert(rain_policy<rain> && infiltration_policy<infiltration> && flow_policy<flow>);
 static_assert(absorption_rule<absorption> && soaking_rule<soaking> && damage_rule<harm>);
 static_assert(breakage_rule<breakage> && detachment_rule<detachment> && scalar_field<field>);
+static_assert(curvature_estimator<estimator> && direction_policy<heading>);
 static_assert(tafoni::executor<executor> && link_network<network>);
 
 }  // namespace tafoni::archetypes

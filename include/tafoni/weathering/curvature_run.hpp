@@ -15,10 +15,12 @@
 #include <tafoni/weathering/detail/door_scale.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -31,7 +33,7 @@ namespace tafoni {
 enum class curvature_stop : std::uint8_t {
     finished,
     observer,           ///< an observer said stop
-    self_intersection,  ///< triangles cut each other however short the step
+    self_intersection,  ///< triangles that did not do so in the input cut each other, however short the step
     worn_away           ///< nothing is left that curvature could move
 };
 
@@ -41,7 +43,7 @@ struct curvature_report {
     std::uint64_t edges_collapsed = 0;
     std::uint64_t retries = 0;       ///< steps that were taken back because triangles cut each other
     double step = 0;                 ///< share of a mean edge that a vertex moves at most, now
-    double removed_volume = 0;       ///< of the closed chain, cubed length unit; 0 for an open mesh's open part
+    double removed_volume = 0;       ///< cubed length unit; of an open mesh right where its border stays
     curvature_stop stopped = curvature_stop::finished;  ///< of the last `run`
 };
 
@@ -60,6 +62,7 @@ public:
     explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
         : process_((process.validate(), std::move(process))), options_((options.validate(), options)),
           surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions),
+          input_triangles_(surface_.triangles),
           input_hash_(detail::surface_hash(surface_)) {
         scale_.enter(surface_.positions);
         report_.step = 1 / options_.step_divisor;
@@ -76,30 +79,11 @@ public:
     template <executor Executor = inline_executor>
     curvature_report run(std::uint64_t iterations, run_context const& context = {}, Executor const& threads = {}) {
         report_.stopped = curvature_stop::finished;
-        auto const told = [&](std::uint64_t done) {
-            if (!context.on_progress) return true;
-            double const share = iterations == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(iterations);
-            return context.on_progress({"weather", share}) == step_control::proceed;
-        };
-        std::uint64_t const end = report_.iterations + iterations;
-        std::uint64_t const begin = report_.iterations;
-        bool going = told(0);
-        if (!going) report_.stopped = curvature_stop::observer;
-        while (going && report_.iterations < end) {
-            if (!iterate(threads)) {
-                report_.stopped = curvature_stop::worn_away;
-                break;
-            }
-            bool const due = options_.check_every > 0 &&
-                             (report_.iterations % options_.check_every == 0 || report_.iterations == end);
-            if (due && !accept()) {
-                report_.stopped = curvature_stop::self_intersection;
-                break;
-            }
-            if (!told(report_.iterations - begin)) {
-                report_.stopped = curvature_stop::observer;
-                break;
-            }
+        try {
+            advance(iterations, context, threads);
+        } catch (...) {
+            report_.removed_volume = scale_.volume_to_user(start_volume_ - volume());
+            throw;
         }
         report_.removed_volume = scale_.volume_to_user(start_volume_ - volume());
         return report_;
@@ -156,7 +140,7 @@ public:
                                         input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same policies and options: the same bits as without
-    /// the break. 	hrows io_error  when the bytes are damaged or belong to another run; then nothing is changed.
+    /// the break. \throws io_error  when the bytes are damaged or belong to another run; then nothing is changed.
     void resume(std::span<std::byte const> bytes) {
         detail::curvature_checkpoint c = detail::curvature_checkpoint_reader(bytes, input_.size())
                                              .read(input_hash_, detail::parameter_hash(process_, options_, input_));
@@ -171,7 +155,7 @@ private:
     [[nodiscard]] detail::curvature_state snapshot() const {
         return {surface_, new_vertex_, wear_, input_of_, report_.iterations, report_.edges_collapsed};
     }
-    void restore(detail::curvature_state s) {
+    void restore(detail::curvature_state s) noexcept {
         surface_ = std::move(s.surface);
         new_vertex_ = std::move(s.new_vertex);
         wear_ = std::move(s.wear);
@@ -185,6 +169,42 @@ private:
     [[nodiscard]] surface_view view() const noexcept {
         return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_};
     }
+    template <executor Executor>
+    void advance(std::uint64_t iterations, run_context const& context, Executor const& threads) {
+        std::uint64_t const begin = report_.iterations;
+        std::uint64_t const end = begin + iterations;
+        double shown = 0;  // a step taken back does not take progress back
+        auto const told = [&] {
+            if (!context.on_progress) return true;
+            double const done = static_cast<double>(std::max(report_.iterations, begin) - begin);
+            shown = std::max(shown, iterations == 0 ? 1.0 : done / static_cast<double>(iterations));
+            return context.on_progress({"weather", shown}) == step_control::proceed;
+        };
+        bool going = told();
+        if (!going) report_.stopped = curvature_stop::observer;
+        while (going && report_.iterations < end) {
+            bool const moved = iterate(threads);
+            if (!moved) report_.stopped = curvature_stop::worn_away;
+            bool const scheduled = moved && options_.check_every > 0 && report_.iterations % options_.check_every == 0;
+            bool const last = !moved || report_.iterations == end;
+            if ((scheduled || (last && options_.check_every > 0 && report_.iterations > safe_.iterations)) && cut()) {
+                report_.stopped = curvature_stop::finished;
+                if (!step_back()) {
+                    report_.stopped = curvature_stop::self_intersection;
+                    break;
+                }
+            } else if (scheduled) {
+                safe_ = snapshot();
+            } else if (!moved) {
+                break;
+            }
+            if (!told()) {
+                report_.stopped = curvature_stop::observer;
+                break;
+            }
+        }
+    }
+
     void refresh() {
         if (fresh_) return;
         rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
@@ -210,7 +230,7 @@ private:
             normal_.resize(n);
             vertex_normals(view(), normal_, threads);
         }
-        if (!(mean_edge_ >= 0)) measure(threads);
+        if (!(mean_edge_ >= 0)) mean_edge_ = measure(surface_.positions, threads).mean;
         double const reach = mean_edge_ * report_.step;
         double const power = options_.power;
         threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
@@ -233,48 +253,53 @@ private:
                 vec3 const step{d * way[0], d * way[1], d * way[2]};
                 next_[v] = vec3{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
                 moved_[v] = length(step);
+                if (!is_finite(next_[v])) {
+                    detail::fail<invalid_input>(errc::out_of_range, "curvature_run: the policies move vertex " + std::to_string(v) +
+                                                                        " to a place that is not finite",
+                                                {.kind = entity::vertex, .index = v});
+                }
             }
         });
-        bool any = false;
-        for (std::size_t v = 0; v < n; ++v) {
-            if (!is_finite(next_[v])) {
-                detail::fail<invalid_input>(errc::out_of_range, "curvature_run: the policies move vertex " + std::to_string(v) +
-                                                                    " to a place that is not finite",
-                                            {.kind = entity::vertex, .index = v});
-            }
-            any = any || moved_[v] > 0;
-        }
+        bool const any = std::any_of(moved_.begin(), moved_.end(), [](double d) { return d > 0; });
         if (!any) return false;
+        edge_lengths const edges = measure(next_, threads);
+        if (options_.topology == mesh_topology::adapt && edges.shortest < options_.small_edge * edges.mean &&
+            thin_out(edges)) {
+            return true;
+        }
+        // Nothing below throws.
         std::swap(surface_.positions, next_);
         for (std::size_t v = 0; v < n; ++v) {
             if (!(moved_[v] > 0)) continue;
             wear_[v] += moved_[v];
             input_of_[v] = vertex_index{};
         }
+        mean_edge_ = edges.mean;
         ++report_.iterations;
-        measure(threads);
-        if (options_.topology == mesh_topology::adapt && shortest_ < options_.small_edge * mean_edge_) thin_out();
         return true;
     }
 
-    /// Mean and shortest edge; blocks of one size, so that the sum does not depend on threads.
+    struct edge_lengths {
+        double mean = 0;
+        double shortest = std::numeric_limits<double>::infinity();
+    };
+    /// Blocks of one size, so that the sum does not depend on threads.
     template <executor Executor>
-    void measure(Executor const& threads) {
-        refresh();
+    [[nodiscard]] edge_lengths measure(std::span<vec3 const> positions, Executor const& threads) const {
         struct edge_sum {
             double sum = 0;
             std::size_t edges = 0;
             double least = std::numeric_limits<double>::infinity();
         };
-        std::size_t const n = surface_.positions.size();
+        std::size_t const n = positions.size();
         std::vector<edge_sum> parts((n + detail::vertex_grain - 1) / detail::vertex_grain);
         threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
             edge_sum p;
             for (std::size_t v = begin; v < end; ++v) {
-                vec3 const at = surface_.positions[v];
+                vec3 const at = positions[v];
                 for (std::uint32_t const w : rings_.neighbors(v)) {
                     if (w < v) continue;
-                    double const l = length(surface_.positions[w] - at);
+                    double const l = length(positions[w] - at);
                     p.sum += l;
                     p.least = std::min(p.least, l);
                     ++p.edges;
@@ -288,47 +313,54 @@ private:
             all.edges += p.edges;
             all.least = std::min(all.least, p.least);
         }
-        mean_edge_ = all.edges > 0 ? all.sum / static_cast<double>(all.edges) : 0.0;
-        shortest_ = all.least;
+        return {all.edges > 0 ? all.sum / static_cast<double>(all.edges) : 0.0, all.least};
     }
 
-    void thin_out() {
-        double const threshold = options_.small_edge * mean_edge_;
-        collapse_report const gone = detail::collapse_short_edges_fn::trusted(surface_, threshold, &rings_);
-        if (gone.collapsed == 0) return;
-        report_.edges_collapsed += gone.collapsed;
-        std::size_t const n = surface_.positions.size();
-        std::vector<double> wear(n, 0.0);
-        std::vector<vertex_index> input_of(n);
-        std::vector<unsigned char> sources(n, 0);
+    /// Finishes an iteration without the edges that have become too short; false where none can go. All or nothing.
+    [[nodiscard]] bool thin_out(edge_lengths const& edges) {
+        detail::curvature_state s = snapshot();
+        s.surface.positions = next_;
+        collapse_report const gone =
+            detail::collapse_short_edges_fn::trusted(s.surface, options_.small_edge * edges.mean, &rings_);
+        if (gone.collapsed == 0) return false;
+        std::size_t const n = s.surface.positions.size();
+        s.wear.assign(n, 0.0);
+        s.input_of.assign(n, vertex_index{});
+        std::vector<unsigned char> merged(n, 0);
         for (std::size_t v = 0; v < wear_.size(); ++v) {
             std::size_t const to = gone.new_vertex[v].value;
-            wear[to] = std::max(wear[to], wear_[v]);
-            input_of[to] = sources[to]++ == 0 ? input_of_[v] : vertex_index{};
-            if (sources[to] > 2) sources[to] = 2;
+            s.wear[to] = std::max(s.wear[to], wear_[v] + moved_[v]);
+            s.input_of[to] = merged[to] == 0 && !(moved_[v] > 0) ? input_of_[v] : vertex_index{};
+            merged[to] = 1;
         }
-        wear_ = std::move(wear);
-        input_of_ = std::move(input_of);
-        for (vertex_index& v : new_vertex_) v = gone.new_vertex[v.value];
-        normal_.clear();
-        fresh_ = false;
-        mean_edge_ = -1;
+        for (vertex_index& v : s.new_vertex) v = gone.new_vertex[v.value];
+        s.edges_collapsed += gone.collapsed;
+        ++s.iterations;
+        restore(std::move(s));
+        return true;
     }
 
-    /// Whether the surface since the last search is sound; else goes back to it and halves the step.
-    bool accept() {
-        if (self_intersections(surface_.positions, surface_.triangles).empty()) {
-            safe_ = snapshot();
-            return true;
+    /// Whether triangles cut each other that did not do so in the input.
+    [[nodiscard]] bool cut() {
+        std::size_t const cuts = self_intersections(surface_.positions, surface_.triangles).size();
+        if (cuts == 0) return false;
+        if (!cuts_at_start_) {
+            std::vector<vec3> start = input_;
+            scale_.enter(start);
+            cuts_at_start_ = self_intersections(start, input_triangles_).size();
         }
+        return cuts > *cuts_at_start_;
+    }
+    /// Back to the last surface that was found sound, with half the step; false after too many times.
+    [[nodiscard]] bool step_back() {
         restore(safe_);
         report_.step /= 2;
         ++report_.retries;
         return report_.step * options_.step_divisor > std::ldexp(1.0, -static_cast<int>(options_.retries) - 1) * 1.5;
     }
 
-    /// Six times would do: the sum over the closed chain about the origin of the door's frame. O(faces).
-    [[nodiscard]] double volume() const {
+    /// The sum over the closed chain about the origin of the door's frame. O(faces).
+    [[nodiscard]] double volume() const noexcept {
         double six = 0;
         auto const& p = surface_.positions;
         for (auto const& t : surface_.triangles) six += dot(p[t[0]], cross(p[t[1]], p[t[2]]));
@@ -340,6 +372,7 @@ private:
     triangle_surface surface_;
     detail::door_scale scale_;
     std::vector<vec3> input_;               ///< positions as given
+    std::vector<std::array<std::uint32_t, 3>> input_triangles_;
     vertex_rings rings_{};
     bool fresh_ = false;
     std::vector<double> h_{};
@@ -351,8 +384,8 @@ private:
     std::vector<vertex_index> input_of_{};    ///< vertex now -> that of the input it still is, or not valid
     curvature_report report_{};
     double mean_edge_ = -1;  ///< of the surface now; below 0: not measured
-    double shortest_ = 0;
     double start_volume_ = 0;
+    std::optional<std::size_t> cuts_at_start_{};
     std::uint64_t input_hash_ = 0;
     detail::curvature_state safe_{};
 };

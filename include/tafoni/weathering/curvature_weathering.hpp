@@ -11,14 +11,19 @@
 #include <tafoni/field/constant.hpp>
 #include <tafoni/rules/parameter_checks.hpp>
 #include <tafoni/rules/roles.hpp>
+#include <tafoni/weathering/detail/durability_role.hpp>
 
 #include <cstdint>
-#include <type_traits>
+#include <span>
 
 namespace tafoni {
 
 namespace detail {
 struct estimator_role {
+    struct refused : refused_part {
+        using refused_part::refused_part;
+        void operator()(surface_view const&, std::span<double>, auto const&) const;
+    };
     template <class T>
     static constexpr bool fits = curvature_estimator<T>;
     template <class T>
@@ -38,25 +43,9 @@ struct direction_role {
         static_assert(fits<T>, "`direction` takes a direction_policy: vec3 direction(wear_point const&) const");
     }
 };
-struct wear_durability_role {
-    template <class T>
-    static constexpr bool fits = scalar_field<T>;
-    template <class T>
-    static constexpr bool resembles = false;
-    template <class T>
-    static void expect() {
-        static_assert(fits<T>, "`durability` takes a scalar_field: double operator()(vec3 const&) const");
-    }
-};
-/// A field of 1 where the field is a constant, else the field's own default.
-template <class Field>
-[[nodiscard]] constexpr Field even_durability() {
-    if constexpr (std::is_same_v<Field, constant_field>) return constant_field{1};
-    else return Field{};
-}
 using curvature_members = bundle_members<bundle_member<estimator_role, tensor_fit>,
                                          bundle_member<direction_role, laplacian_direction>,
-                                         bundle_member<wear_durability_role, constant_field>>;
+                                         bundle_member<durability_role, constant_field>>;
 }  // namespace detail
 
 /// Salt, frost and wind that wear what sticks out [Skala's thesis, section 9.3].

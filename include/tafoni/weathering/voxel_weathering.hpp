@@ -10,6 +10,7 @@
 #include <tafoni/voxel/bubble_choice.hpp>
 #include <tafoni/voxel/rates.hpp>
 #include <tafoni/voxel/single_bubble.hpp>
+#include <tafoni/weathering/detail/durability_role.hpp>
 
 namespace tafoni {
 
@@ -34,16 +35,6 @@ struct rate_role {
     template <class T>
     static void expect() {
         static_assert(fits<T>, "`rate` takes a rate_function: double operator()(double) const");
-    }
-};
-struct durability_role {
-    template <class T>
-    static constexpr bool fits = scalar_field<T>;
-    template <class T>
-    static constexpr bool resembles = false;
-    template <class T>
-    static void expect() {
-        static_assert(fits<T>, "`durability` takes a scalar_field: double operator()(vec3 const&) const");
     }
 };
 using voxel_members = bundle_members<bundle_member<bubbles_role, single_bubble>, bundle_member<rate_role, cubic_rate>,

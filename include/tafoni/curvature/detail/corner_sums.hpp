@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,35 +19,43 @@ namespace tafoni::detail {
 inline constexpr std::size_t face_grain = 4096;
 inline constexpr std::size_t vertex_grain = 2048;
 
-/// `sums[v]` = sum over the corners at v, by ascending face, of what `face(f)` gives for the corner.
+/// `finish(v, sum)` for every vertex, with the sum over the corners at v, by ascending face, of what a face gives.
 ///
-/// `face(f)` returns a value with `bool valid` and `Sum corner(k)`. One thread adds corners as the faces come;
-/// several store the faces and gather: the same additions in the same order. O(faces).
-template <class Sum, class Face, executor E>
-void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Face const& face, E const& executor) {
-    using face_value = decltype(face(std::size_t{}));
+/// `source.face(f)` has `Sum corner(k)`, zeros for a triangle without area, and `part()`, what is kept of it in
+/// between; `source.face(f, part)` gives it again. One thread adds corners as the faces come, in `sums` (one entry per
+/// vertex; of several threads none); several keep the parts and gather: the same additions in the same order. O(faces).
+template <class Sum, class Source, executor E, class Finish>
+void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Source const& source, E const& executor,
+                 Finish const& finish) {
+    std::size_t const faces = s.triangles.size();
+    std::size_t const vertices = s.positions.size();
     if (executor.thread_count() <= 1) {
         std::fill(sums.begin(), sums.end(), zero);
-        for (std::size_t f = 0; f < s.triangles.size(); ++f) {
-            face_value const value = face(f);
-            if (!value.valid) continue;
-            for (std::size_t k = 0; k < 3; ++k) sums[s.triangles[f][k]] += value.corner(k);
+        for (std::size_t f = 0; f < faces; ++f) {
+            auto const face = source.face(f);
+            for (std::size_t k = 0; k < 3; ++k) sums[s.triangles[f][k]] += face.corner(k);
         }
+        for (std::size_t v = 0; v < vertices; ++v) finish(v, sums[v]);
         return;
     }
-    std::vector<face_value> values(s.triangles.size());
-    executor.for_blocks(values.size(), face_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) values[f] = face(f);
+    // Not initialised: the threads that write the parts first also have their pages made.
+    auto const parts = std::make_unique_for_overwrite<decltype(source.face(0).part())[]>(faces);
+    executor.for_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) parts[f] = source.face(f).part();
     });
-    executor.for_blocks(sums.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
+    executor.for_blocks(vertices, vertex_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             Sum sum = zero;
-            for (auto const& c : s.rings->faces(v)) {
-                if (values[c.face].valid) sum += values[c.face].corner(c.place);
-            }
-            sums[v] = sum;
+            for (auto const& c : s.rings->faces(v)) sum += source.face(c.face, parts[c.face]).corner(c.place);
+            finish(v, sum);
         }
     });
+}
+
+/// Scratch for `sum_corners`.
+template <class Sum, executor E>
+[[nodiscard]] std::vector<Sum> corner_scratch(surface_view const& s, E const& executor) {
+    return std::vector<Sum>(executor.thread_count() <= 1 ? s.positions.size() : 0);
 }
 
 /// What a border vertex takes where an estimator says nothing there; 0 without inner neighbours.
@@ -59,6 +68,16 @@ void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Fa
         inner += 1;
     }
     return inner > 0 ? sum / inner : 0.0;
+}
+
+/// `mean_of_inner_neighbors` at every border vertex. O(vertices).
+template <executor E>
+void fill_border(surface_view const& s, std::span<double> mean, E const& executor) {
+    executor.for_blocks(mean.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (s.rings->is_border(v)) mean[v] = mean_of_inner_neighbors(s, mean, v);
+        }
+    });
 }
 
 /// The sides of a triangle from corner 0 and what of them is not zero beyond rounding.

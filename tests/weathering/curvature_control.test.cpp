@@ -1,0 +1,278 @@
+#include "support/curved_surfaces.hpp"
+
+#include <tafoni/core/thread_pool.hpp>
+#include <tafoni/testing/archetypes.hpp>
+#include <tafoni/weathering/curvature_run.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+using namespace tafoni;
+using namespace tafoni_test;
+
+namespace {
+
+struct stumble : std::runtime_error {
+    stumble() : std::runtime_error("stumbled") {}
+};
+/// Throws at call k, counted over all copies.
+struct fuse {
+    std::shared_ptr<std::atomic<long>> left = std::make_shared<std::atomic<long>>(std::numeric_limits<long>::max());
+    void burn() const {
+        if (left->fetch_sub(1) == 1) throw stumble();
+    }
+};
+struct stumbling_estimator {
+    fuse at{};
+    void operator()(surface_view const& s, std::span<double> mean, executor auto const& x) const {
+        tensor_fit{}(s, mean, x);
+        at.burn();
+    }
+};
+struct stumbling_direction {
+    fuse at{};
+    [[nodiscard]] vec3 direction(wear_point const& p) const {
+        at.burn();
+        return blended_direction{}.direction(p);
+    }
+};
+struct stumbling_field {
+    fuse at{};
+    double operator()(vec3 const& p) const {
+        at.burn();
+        return 1 + 0.5 * p[0];
+    }
+};
+
+/// Long and thin, so that edges collapse on the way.
+triangle_surface bar() {
+    triangle_surface s = torus_surface(24, 12, 0.3).mesh;
+    for (vec3& p : s.positions) p[2] *= 0.3;
+    return s;
+}
+constexpr curvature_options thinning{.small_edge = 0.35, .check_every = 3};
+
+/// A run that throws at every k-th call keeps whole iterations and goes on to the same bits.
+template <class Process, class Executor>
+void stumbles_well(Process const& process, fuse const& f, long step, Executor const& threads) {
+    triangle_surface const s = bar();
+    std::vector<triangle_surface> after;
+    long const endless = std::numeric_limits<long>::max();
+    *f.left = endless;
+    {
+        curvature_run run(s, process, thinning);
+        after.push_back(run.surface());
+        for (int k = 0; k < 6; ++k) {
+            run.run(1);
+            after.push_back(run.surface());
+        }
+        REQUIRE(run.report().edges_collapsed > 0);
+    }
+    long const calls = endless - f.left->load();
+    REQUIRE(calls >= 6);
+    for (long k = 1; k <= calls; k += step) {
+        *f.left = endless;
+        curvature_run run(s, process, thinning);
+        *f.left = k;
+        CHECK_THROWS_AS(run.run(6, {}, threads), stumble);
+        std::uint64_t const done = run.report().iterations;
+        REQUIRE(done < 6);
+        REQUIRE(run.surface() == after[done]);
+        *f.left = endless;
+        run.run(6 - done, {}, threads);
+        REQUIRE(run.surface() == after[6]);
+    }
+}
+
+struct everywhere {
+    void operator()(surface_view const&, std::span<double> mean, executor auto const&) const {
+        std::fill(mean.begin(), mean.end(), 1.0);
+    }
+};
+/// Pushes the middle of a plate's upper side down, farther than a direction may.
+struct punch {
+    [[nodiscard]] vec3 direction(wear_point const& at) const {
+        double const x = at.position[0] - 0.5;
+        double const y = at.position[1] - 0.5;
+        return at.normal[2] > 0.5 && x * x + y * y < 0.04 ? vec3{0, 0, -2.5} : vec3{0, 0, 0};
+    }
+};
+/// Two sheets of n x n squares, one above the other.
+triangle_surface two_sheets(std::uint32_t n, double gap) {
+    triangle_surface s;
+    for (std::uint32_t level = 0; level < 2; ++level) {
+        auto const first = static_cast<std::uint32_t>(s.positions.size());
+        for (std::uint32_t j = 0; j <= n; ++j) {
+            for (std::uint32_t i = 0; i <= n; ++i) s.positions.push_back(vec3{1.0 * i / n, 1.0 * j / n, gap * level});
+        }
+        for (std::uint32_t j = 0; j < n; ++j) {
+            for (std::uint32_t i = 0; i < n; ++i) {
+                std::uint32_t const a = first + i + (n + 1) * j;
+                std::uint32_t const d = a + n + 2;
+                if (level == 1) {
+                    s.triangles.push_back({a, a + 1, d});
+                    s.triangles.push_back({a, d, d - 1});
+                } else {
+                    s.triangles.push_back({a, d, a + 1});
+                    s.triangles.push_back({a, d - 1, d});
+                }
+            }
+        }
+    }
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("whatever a policy throws, whole iterations stay and the run goes on to the same bits") {
+    stumbling_estimator const e;
+    stumbles_well(curvature_weathering{.estimator = e}, e.at, 1, inline_executor{});
+    stumbling_direction const d;
+    stumbles_well(curvature_weathering{.direction = d}, d.at, 97, inline_executor{});
+    stumbling_field const f;
+    stumbles_well(curvature_weathering{.durability = f}, f.at, 97, inline_executor{});
+}
+
+TEST_CASE("what a policy throws on a thread arrives once and leaves whole iterations", "[threads]") {
+    stumbling_direction const d;
+    stumbles_well(curvature_weathering{.direction = d}, d.at, 331, thread_pool(3));
+}
+
+TEST_CASE("an observer that throws leaves whole iterations") {
+    triangle_surface const s = bar();
+    curvature_run whole(s, {}, thinning);
+    whole.run(6);
+    for (int k = 0; k <= 6; ++k) {
+        curvature_run run(s, {}, thinning);
+        int ticks = 0;
+        run_context context;
+        context.on_progress = [&](progress_event const&) {
+            if (ticks++ == k) throw stumble();
+            return step_control::proceed;
+        };
+        CHECK_THROWS_AS(run.run(6, context), stumble);
+        CHECK(run.report().iterations == static_cast<std::uint64_t>(k));
+        run.run(6 - static_cast<std::uint64_t>(k));
+        CHECK(run.surface() == whole.surface());
+        CHECK(run.report().removed_volume == whole.report().removed_volume);
+    }
+}
+
+TEST_CASE("a step that makes triangles cut each other is taken back and halved, progress never falls") {
+    triangle_surface const s = two_sheets(10, 0.02);
+    auto const process = curvature_weathering{.estimator = everywhere{}, .direction = punch{}};
+    curvature_run hasty(s, process);
+    hasty.run(1);
+    CHECK(!self_intersections(hasty.surface().positions, s.triangles).empty());
+
+    curvature_run careful(s, process, {.check_every = 1});
+    double before = 0;
+    run_context context;
+    context.on_progress = [&](progress_event const& e) {
+        CHECK(e.fraction >= before);
+        CHECK(e.fraction <= 1);
+        before = e.fraction;
+        return step_control::proceed;
+    };
+    curvature_report const once = careful.run(1, context);
+    CHECK(once.stopped == curvature_stop::finished);
+    CHECK(once.iterations == 1);
+    CHECK(once.retries == 1);
+    CHECK(once.step == 0.05);
+    CHECK(self_intersections(careful.surface().positions, s.triangles).empty());
+
+    before = 0;
+    curvature_report const last = careful.run(100, context);  // the punch comes through in the end
+    CHECK(last.stopped == curvature_stop::self_intersection);
+    CHECK(last.retries == 7);
+    CHECK(self_intersections(careful.surface().positions, s.triangles).empty());
+}
+
+TEST_CASE("searches between the ends of runs do not depend on where runs end") {
+    triangle_surface const s = two_sheets(10, 0.05);
+    auto const process = curvature_weathering{.estimator = everywhere{}, .direction = punch{}};
+    curvature_run once(s, process, {.check_every = 4});
+    once.run(6);
+    curvature_run twice(s, process, {.check_every = 4});
+    twice.run(1);
+    twice.run(5);
+    CHECK(once.report().retries > 0);
+    CHECK(once.surface() == twice.surface());
+    CHECK(once.report().retries == twice.report().retries);
+}
+
+TEST_CASE("a policy that leaves the numbers is named with the vertex, and nothing has moved") {
+    struct nowhere {
+        [[nodiscard]] vec3 direction(wear_point const& at) const {
+            return vec3{at.position[0] > 0.9 ? std::numeric_limits<double>::quiet_NaN() : 0.0, 0, 1};
+        }
+    };
+    triangle_surface const s = triangles_of(icosphere(2));
+    curvature_run run(s, curvature_weathering{.direction = nowhere{}});
+    CHECK_THROWS_WITH(run.run(3), Catch::Contains("curvature_run") && Catch::Contains("vertex"));
+    CHECK(run.surface() == s);
+    CHECK(run.report().iterations == 0);
+    struct unknown {
+        double operator()(vec3 const&) const { return std::numeric_limits<double>::quiet_NaN(); }
+    };
+    curvature_run soft(s, curvature_weathering{.durability = unknown{}});
+    CHECK_THROWS_AS(soft.run(1), invalid_input);
+}
+
+TEST_CASE("the offset of a sphere has the radius R - d and its volume, with order two") {
+    double before = 0;
+    for (int level : {3, 4}) {
+        triangle_surface const s = sphere(level).mesh;
+        double const d = 3 * s.mean_edge_length() / 20;
+        curvature_run run(s, curvature_weathering{.direction = inward_normal{}}, {.step_divisor = 20});
+        double const start = 4 * 3.14159265358979 / 3;
+        double at = 1;
+        for (int k = 0; k < 3; ++k) {
+            at -= run.surface().mean_edge_length() / 20;
+            run.run(1);
+        }
+        for (vec3 const& p : run.surface().positions) REQUIRE(length(p) == Approx(at).epsilon(1e-9));
+        double const error = std::fabs(run.report().removed_volume - start * (1 - at * at * at)) / start;
+        CHECK(error < 0.2 * d);
+        if (before > 0) CHECK(error < before / 6);  // order two, of a volume that itself halves
+        before = error;
+    }
+}
+
+TEST_CASE("archetypes of the policies weather") {
+    triangle_surface const s = triangles_of(icosphere(2));
+    auto const process = curvature_weathering{.estimator = archetypes::estimator(0), .direction = archetypes::heading(0),
+                                              .durability = archetypes::field(0)};
+    curvature_run run(s, process, {.check_every = 1});
+    CHECK(run.run(2, {}, archetypes::executor(0)).iterations == 2);
+    CHECK(run.curvature(archetypes::executor(0)).size() == run.surface().positions.size());
+}
+
+TEST_CASE("the least meshes have nothing to wear, or wear without harm") {
+    triangle_surface const point{.positions = {vec3{1, 2, 3}}, .triangles = {}};
+    triangle_surface const one{.positions = {vec3{0, 0, 0}, vec3{1, 0, 0}, vec3{0, 1, 0}}, .triangles = {{0, 1, 2}}};
+    triangle_surface twice = one;
+    twice.triangles.push_back({0, 1, 2});
+    twice.triangles.push_back({0, 2, 1});
+    triangle_surface flat = triangles_of(icosphere(1));
+    for (vec3& p : flat.positions) p[2] = 0;
+    triangle_surface thick = triangles_of(icosphere(1));  // a book: five pages on one spine
+    for (std::uint32_t k = 0; k < 5; ++k) {
+        thick.positions.push_back(vec3{2, 1.0 * k, 1.0});
+        thick.triangles.push_back({0, 1, 42 + k});
+    }
+    for (triangle_surface const& s : {triangle_surface{}, point, one, twice, flat, thick}) {
+        for (mesh_topology const topology : {mesh_topology::keep, mesh_topology::adapt}) {
+            curvature_run run(s, curvature_weathering{.direction = blended_direction{}},
+                              {.topology = topology, .check_every = 2});
+            run.run(7);
+            for (vec3 const& p : run.surface().positions) CHECK(is_finite(p));
+            CHECK(std::isfinite(run.report().removed_volume));
+            CHECK(run.new_vertex().size() == s.positions.size());
+        }
+    }
+}
