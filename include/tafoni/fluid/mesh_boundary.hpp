@@ -8,6 +8,7 @@
 #include <tafoni/core/index.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/detail/face_balls.hpp>
 #include <tafoni/geometry/detail/triangle_queries.hpp>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ namespace tafoni {
 /// mesh, which must outlive it; `refit` after its vertices have moved. Models `fluid_boundary`.
 ///
 /// A particle's question costs one cell. Cells are about as long as the larger of twice the reach and the mean
-/// edge; there are at most about 8 million of 4 bytes, and 4 bytes for every face in a cell. Faces are also in cells
-/// that they come to when vertices move by a quarter of the larger of reach and mean edge; until one moves farther
+/// edge; there are at most about 8 million of 4 bytes, and 28 bytes for every face in a cell. Faces are also in cells
+/// that they come to when vertices move by half the larger of reach and mean edge; until one moves farther
 /// the cells stay. Answers depend on the mesh alone, never on when the cells were filled.
 class mesh_boundary {
 public:
@@ -70,7 +71,7 @@ public:
     [[nodiscard]] std::span<vec3 const> positions() const noexcept { return positions_; }
     [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return (begin_.capacity() + at_.capacity() + faces_.capacity()) * sizeof(std::uint32_t) + discs_.capacity() * sizeof(disc) +
+        return (begin_.capacity() + at_.capacity() + faces_.capacity()) * sizeof(std::uint32_t) + balls_.capacity() * sizeof(detail::face_ball) + entries_.capacity() * sizeof(entry) + discs_.capacity() * sizeof(disc) +
                (last_.capacity() + base_.capacity()) * sizeof(vec3) + faces_then_.capacity() * sizeof(std::array<std::uint32_t, 3>) +
                moved_.capacity();
     }
@@ -79,22 +80,20 @@ public:
     template <class Visit>
     void for_each_contact(vec3 const& p, double radius, Visit const& visit) const {
         std::size_t const c = cell_of(p);
-        if (c == outside) return;
-        std::uint32_t const* const begin = faces_.data() + begin_[c];
-        std::uint32_t const* const end = faces_.data() + begin_[c + 1];
-        if (begin == end) return;
+        if (c == outside || begin_[c] == begin_[c + 1]) return;
         bool found = false;
         seen const at = see(p);
         float const most = static_cast<float>(radius * inverse_) + blur_;
         float nearest = std::numeric_limits<float>::max();  // square of the way to some point of a face
-        for (std::uint32_t const* k = begin; k != end; ++k) {
-            disc const& d = discs_[*k];
+        for_each_face(c, at, most, [&](std::uint32_t f) {
+            disc const& d = discs_[f];
             auto const [square, over] = at.from(d);
             nearest = square < nearest ? square : nearest;
-            if (over > most || over < -most || square - over * over > d.square + 1e-5F * square) continue;
-            found = visit_over(*k, p, radius, visit) || found;
-        }
-        if (!found) visit_nearest(p, radius, {begin, end}, std::sqrt(nearest) + blur_, visit);
+            if (over > most || over < -most || square - over * over > d.square + 1e-5F * square) return;
+            found = visit_over(f, p, radius, visit) || found;
+        });
+        if (found || nearest == std::numeric_limits<float>::max()) return;
+        visit_nearest(p, radius, c, std::min(most, std::sqrt(nearest) + blur_) * (1 + 1e-5F), visit);
     }
 
 private:
@@ -157,28 +156,41 @@ private:
         return true;
     }
 
-    /// Over an edge or a corner, where no face has the foot. Some point of a face is no farther than `bound`.
+    /// Faces of a cell that may be within `radius`, in cells, ascending.
+    template <class F>
+    void for_each_face(std::size_t c, seen const& at, float radius, F const& visit) const {
+        auto const middle = [](float a, std::size_t i) { return a - (static_cast<float>(i) + 0.5F); };
+        detail::face_ball const ball = detail::face_ball::around(
+            middle(at.x, c % size_[0]), middle(at.y, c / size_[0] % size_[1]), middle(at.z, c / size_[0] / size_[1]), radius);
+        constexpr std::uint32_t most = 128;
+        std::array<std::uint32_t, most + 4> around;
+        for (std::uint32_t from = begin_[c]; from < begin_[c + 1]; from += most) {
+            std::size_t const n = detail::touched_balls(balls_.data() + from, std::min(most, begin_[c + 1] - from), ball, around.data());
+            for (std::size_t k = 0; k < n; ++k) visit(faces_[from + around[k]]);
+        }
+    }
+
+    /// Over an edge or a corner, where no face has the foot. The nearest is no farther than `limit`, in cells.
     template <class Visit>
-    void visit_nearest(vec3 const& p, double radius, std::span<std::uint32_t const> faces, float bound, Visit const& visit) const {
+    void visit_nearest(vec3 const& p, double radius, std::size_t c, float limit, Visit const& visit) const {
         double nearest = radius * radius;
         std::uint32_t best = face_index::none;
         vec3 way{0, 0, 0};
         seen const at = see(p);
-        float const limit = std::min(static_cast<float>(radius * inverse_) + blur_, bound) * (1 + 1e-5F);
-        for (std::uint32_t const f : faces) {
+        for_each_face(c, at, limit, [&](std::uint32_t f) {
             disc const& d = discs_[f];
             auto const [square, over] = at.from(d);
             float const wide = d.radius + limit;
-            if (over > limit || over < -limit || square > wide * wide * (1 + 1e-5F)) continue;
+            if (over > limit || over < -limit || square > wide * wide * (1 + 1e-5F)) return;
             auto const& t = triangles_[f];
             vec3 const foot = detail::nearest_on_triangle(positions_[t[0]], positions_[t[1]], positions_[t[2]], p);
             vec3 const away{p - foot};
             double const length_squared = squared_length(away);
-            if (!(length_squared < nearest)) continue;
+            if (!(length_squared < nearest)) return;
             nearest = length_squared;
             best = f;
             way = away;
-        }
+        });
         double const l = std::sqrt(nearest);
         if (best == face_index::none || !(l > 0)) return;
         auto const& t = triangles_[best];
@@ -196,23 +208,26 @@ private:
         base_ = last_;
         faces_then_.assign(triangles_.begin(), triangles_.end());
         discs_.resize(triangles_.size());
-        spans_.resize(triangles_.size());
         begin_.assign(cells() + 1, 0);
+        entries_.clear();
+        float const further = static_cast<float>(slack_ * inverse_) + 2 * blur_;
         for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
             discs_[f] = disc_of(triangles_[f]);
-            spans_[f] = span_of(triangles_[f]);
-            for_each_cell(f, [&](std::size_t c) { ++begin_[c + 1]; });
+            float const radius = discs_[f].radius + further;
+            for_each_cell(discs_[f], span_of(triangles_[f]), [&](std::size_t c, float x, float y, float z) {
+                ++begin_[c + 1];
+                entries_.push_back({static_cast<std::uint32_t>(c), f, detail::face_ball::around(x, y, z, radius)});
+            });
         }
-        std::uint64_t total = 0;
-        for (std::size_t c = 0; c < cells(); ++c) {
-            total += begin_[c + 1];
-            begin_[c + 1] = static_cast<std::uint32_t>(total);
-        }
-        detail::require_indexable("mesh_boundary: faces in cells", static_cast<std::size_t>(total));
-        faces_.resize(static_cast<std::size_t>(total));
+        detail::require_indexable("mesh_boundary: faces in cells", entries_.size());
+        for (std::size_t c = 0; c < cells(); ++c) begin_[c + 1] += begin_[c];
+        faces_.resize(entries_.size());
+        balls_.resize(entries_.size());
         at_.assign(begin_.begin(), begin_.end() - 1);
-        for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
-            for_each_cell(f, [&](std::size_t c) { faces_[at_[c]++] = f; });
+        for (entry const& e : entries_) {
+            std::uint32_t const to = at_[e.cell]++;
+            faces_[to] = e.face;
+            balls_[to] = e.ball;
         }
     }
 
@@ -229,7 +244,7 @@ private:
         if (triangles_.empty()) return;
         double const edge = edges / (3 * static_cast<double>(triangles_.size()));
         cell_ = std::max(2 * reach_, edge);
-        slack_ = 0.25 * std::max(reach_, edge);
+        slack_ = 0.5 * std::max(reach_, edge);
         double const rim = reach_ + slack_;
         vec3 const e = box.extent();
         lo_ = vec3{box.lo[0] - rim, box.lo[1] - rim, box.lo[2] - rim};
@@ -256,6 +271,11 @@ private:
         return c[0] + size_[0] * (c[1] + size_[1] * c[2]);
     }
 
+    struct entry {
+        std::uint32_t cell = 0;
+        std::uint32_t face = 0;
+        detail::face_ball ball{};
+    };
     /// Cells around a face.
     struct cell_span {
         std::array<std::uint32_t, 3> low{};
@@ -276,9 +296,7 @@ private:
     /// Those of the cells around a face that its plane comes near: what is within reach of a face whose corners have
     /// moved by the slack is within the sum of both of the face as it was.
     template <class F>
-    void for_each_cell(std::uint32_t f, F const& visit) const {
-        cell_span const& s = spans_[f];
-        disc const& d = discs_[f];
+    void for_each_cell(disc const& d, cell_span const& s, F const& visit) const {
         float const rim = static_cast<float>((reach_ + slack_) * inverse_) + 2 * blur_ +
                           0.5001F * (std::fabs(d.nx) + std::fabs(d.ny) + std::fabs(d.nz));
         for (std::size_t z = s.low[2]; z <= s.high[2]; ++z) {
@@ -288,7 +306,9 @@ private:
                 float const over_y = over_z + (static_cast<float>(y) + 0.5F - d.y) * d.ny;
                 for (std::size_t x = s.low[0]; x <= s.high[0]; ++x) {
                     float const over = over_y + (static_cast<float>(x) + 0.5F) * d.nx;
-                    if (over <= rim && over >= -rim) visit(row + x);
+                    if (!(over <= rim && over >= -rim)) continue;
+                    visit(row + x, d.x - (static_cast<float>(x) + 0.5F), d.y - (static_cast<float>(y) + 0.5F),
+                          d.z - (static_cast<float>(z) + 0.5F));
                 }
             }
         }
@@ -305,9 +325,10 @@ private:
     std::array<std::size_t, 3> size_{};
     std::vector<std::uint32_t> begin_{};  ///< cell -> its first place in `faces_`
     std::vector<std::uint32_t> faces_{};  ///< by cell, ascending in each
+    std::vector<detail::face_ball> balls_{};  ///< beside `faces_`: those that hold the face wherever the slack lets it go
     std::vector<std::uint32_t> at_{};
+    std::vector<entry> entries_{};            ///< by face, while cells are filled
     std::vector<disc> discs_{};           ///< by face
-    std::vector<cell_span> spans_{};      ///< by face
     std::vector<vec3> base_{};            ///< positions that the cells were filled for
     std::vector<vec3> last_{};            ///< positions that the discs are of
     std::vector<std::array<std::uint32_t, 3>> faces_then_{};

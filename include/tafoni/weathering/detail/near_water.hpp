@@ -28,7 +28,7 @@ public:
         if (points.empty() || vertices.empty()) return;
         box3 box;
         for (vec3 const& p : points) box.include(p);
-        lay_out(box, reach);
+        lay_out(box, reach, 4 * static_cast<double>(points.size() + vertices.size()));
         begin_.assign(size_[0] * size_[1] * size_[2] + 1, 0);
         cell_.resize(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -46,12 +46,12 @@ public:
     }
 
 private:
-    void lay_out(box3 const& box, double reach) {
+    void lay_out(box3 const& box, double reach, double most) {
         double cell = reach;
         lo_ = box.lo;
         vec3 const e = box.extent();
         auto const along = [&](int d) { return std::floor(e[d] / cell) + 1; };
-        while (along(0) * along(1) * along(2) > 4e6) cell *= 1.25;
+        while (along(0) * along(1) * along(2) > most) cell *= 1.25;
         inverse_ = 1 / cell;
         for (int d = 0; d < 3; ++d) size_[static_cast<std::size_t>(d)] = static_cast<std::size_t>(along(d));
     }
