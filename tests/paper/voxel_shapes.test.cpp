@@ -102,13 +102,17 @@ TEST_CASE("Figure 10: an inside corner becomes a cavern in the layer that is les
                                                    {.steps = 2, .spheroidal = 0, .cavernous = 1}}});
         REQUIRE(r.steps == 20);
         REQUIRE(r.voxels_colluvium == 0);
+        voxel_run caverns(fold, run.process(), run.options());
+        caverns.run({.phases = {{.steps = 20, .spheroidal = 0, .cavernous = 1}}});
         int soft = 0;
         int hard = 0;
         int roofed = 0;
+        int opened = 0;
         for (std::int32_t z = 0; z < n; ++z) {
             for (std::int32_t y = 0; y < n; ++y) {
                 for (std::int32_t x = 0; x < n; ++x) {
                     if (!fold.is_rock({x, y, z}) || run.grid().is_rock({x, y, z})) continue;
+                    opened += caverns.grid().is_rock({x, y, z}) ? 1 : 0;
                     bool const in_layer = z >= 20 && z < 44;
                     ++(in_layer ? soft : hard);
                     if (in_layer && run.grid().is_rock({x, y, 50})) ++roofed;
@@ -116,6 +120,7 @@ TEST_CASE("Figure 10: an inside corner becomes a cavern in the layer that is les
             }
         }
         CHECK(soft > 5000);
+        CHECK(opened > 100);  // by the round of spheroidal weathering: walls of caverns, seen from outside
         CHECK(hard < soft / 20);
         CHECK(roofed > soft * 9 / 10);
         auto const depth = [&](voxel from, voxel step) {

@@ -8,7 +8,10 @@
 
 using namespace tafoni;
 
-TEST_CASE("C3: when memory runs out at any point, the run stays usable and ends in the same bytes") {
+namespace {
+
+/// A ruin over two bricks.
+sparse_grid ruin() {
     sparse_grid rock({.size = {34, 9, 10}}, up_axis::plus_z,
                      {{border_kind::air, border_kind::air, border_kind::air, border_kind::air, border_kind::rock, border_kind::air}});
     stream random(3, stage::user, 0);
@@ -19,6 +22,56 @@ TEST_CASE("C3: when memory runs out at any point, the run stays usable and ends 
             }
         }
     }
+    return rock;
+}
+
+}  // namespace
+
+TEST_CASE("C3: when memory runs out while policies are replaced or a checkpoint is read, the run is as before") {
+    voxel_options const options{.colluvium = repose_rule{}, .rockfall = rockfall_options{}};
+    auto const process = voxel_weathering{.durability = constant_field{.value = 0.01}};
+    auto const harder = voxel_weathering{.bubbles = single_bubble{sphere_bubble{.radius = 5}}, .durability = constant_field{.value = 0.02}};
+    voxel_run whole(ruin(), process, options);
+    auto const start = whole.checkpoint();
+    whole.run({.phases = {{.steps = 2}}});
+    auto const middle = whole.checkpoint();
+    whole.run({.phases = {{.steps = 2}}});
+    auto const end = whole.checkpoint();
+    for (int what = 0; what < 3; ++what) {
+        bool failed = true;
+        for (long k = 0; failed && k < 5000; k += 1 + k / 40) {
+            voxel_run run(ruin(), process, options);
+            run.run({.phases = {{.steps = 2}}});
+            failed = false;
+            tafoni_test::allocations_left = k;
+            try {
+                if (what == 0) run.replace(harder);
+                if (what == 1) run.replace(voxel_options{.skin_depth = 2});
+                if (what == 2) run.resume(start);
+            } catch (std::bad_alloc const&) {
+                failed = true;
+            }
+            if (!failed) break;
+            tafoni_test::allocations_left = 20;
+            try {
+                run.run({.phases = {{.steps = 2}}});
+            } catch (std::bad_alloc const&) {
+            }
+            tafoni_test::allocations_left = -1;
+            bool const as_before = run.steps() > 2 || run.checkpoint() == middle;
+            run.run({.phases = {{.steps = 4 - run.steps()}}});
+            bool const same = run.checkpoint() == end;
+            INFO("way " << what << ", allocation " << k);
+            REQUIRE(as_before);
+            REQUIRE(same);
+        }
+        tafoni_test::allocations_left = -1;
+        REQUIRE(!failed);
+    }
+}
+
+TEST_CASE("C3: when memory runs out at any point, the run stays usable and ends in the same bytes") {
+    sparse_grid const rock = ruin();
     auto const process = voxel_weathering{.durability = constant_field{.value = 0.01}};
     for (bool const more : {false, true}) {
         voxel_options options;
