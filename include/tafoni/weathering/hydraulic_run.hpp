@@ -56,6 +56,8 @@ public:
     }
 
     /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
+    /// Where an observer, a rule, an estimator or the fluid throws, surface and report are those after the last whole
+    /// iteration, and another `run` goes on as if nothing had been thrown (if the fluid does).
     /// O(vertices + faces + particles) each, beside the fluid's own cost.
     template <executor Executor = inline_executor>
     hydraulic_report run(std::uint64_t iterations, run_context const& context = {}, Executor const& threads = {}) {
@@ -70,8 +72,6 @@ public:
             iterate(threads);
         }
         report_.particles = fluid_.particle_count();
-        report_.ledger = {.eroded = unit_.volume(books_.eroded), .deposited = unit_.volume(books_.deposited),
-                          .carried = unit_.volume(books_.carried()), .left = unit_.volume(books_.left)};
         return report_;
     }
 
@@ -131,22 +131,32 @@ private:
         } else {
             walls_[0].refit(surface_.positions, surface_.triangles);
         }
-        double const dt = fluid_.step(walls_[0], threads);
+        double const dt = ahead_ > 0 ? ahead_ : fluid_.step(walls_[0], threads);
         if (!(dt > 0 && std::isfinite(dt))) {
             detail::fail<invalid_input>(errc::bad_parameter, "hydraulic_run: the fluid advanced by " + detail::number_text(dt) + " s",
                                         {.kind = entity::parameter, .value = dt});
         }
-        touch(dt, threads);
+        // What the user wrote may throw up to here and no further; the next run then goes on behind the fluid's step.
+        ahead_ = dt;
         double const most = mean_edge_ / options_.step_divisor;
+        touch(dt, threads);
+        if constexpr (!exchange_rule<Process>) displace(most, threads);
+        ahead_ = 0;
+        book_contacts();
         if constexpr (exchange_rule<Process>) {
             std::vector<std::int64_t> const before = books_.due;
             detail::settle_accounts(surface_.positions, surface_.triangles, rings_, unit_, most, books_, wear_);
             for (std::size_t v = 0; v < before.size(); ++v) sediment_[v] += before[v] - books_.due[v];
         } else {
-            wear_by_curvature(most, threads);
+            book_difference();
+            for (std::size_t v = 0; v < next_.size(); ++v) wear_[v] += length(next_[v] - surface_.positions[v]);
+            std::swap(surface_.positions, next_);
         }
         report_.time += dt;
         ++report_.iterations;
+        report_.particles = fluid_.particle_count();
+        report_.ledger = {.eroded = unit_.volume(books_.eroded), .deposited = unit_.volume(books_.deposited),
+                          .carried = unit_.volume(books_.carried()), .left = unit_.volume(books_.left)};
         if (options_.refine_length > 0 && report_.iterations % options_.refine_every == 0) refine();
     }
 
@@ -154,10 +164,10 @@ private:
     template <executor Executor>
     void touch(double dt, Executor const& threads) {
         std::size_t const n = fluid_.particle_count();
-        std::vector<block> blocks((n + particle_grain - 1) / particle_grain);
+        blocks_.assign((n + particle_grain - 1) / particle_grain, {});
         double const reach = fluid_.reach();
         threads.for_blocks(n, particle_grain, [&](std::size_t begin, std::size_t end) {
-            block& out = blocks[begin / particle_grain];
+            block& out = blocks_[begin / particle_grain];
             for (std::size_t i = begin; i < end; ++i) {
                 vec3 const p = fluid_.position(i);
                 bool touches = false;
@@ -175,6 +185,10 @@ private:
                         wash_point const w{.position = p, .velocity = fluid_.velocity(i), .normal = c.normal,
                                            .distance = c.distance, .reach = reach};
                         double const rate = process_.rate(w);
+                        if (!std::isfinite(rate)) {
+                            detail::fail<invalid_input>(errc::bad_parameter, "hydraulic_run: the rule answers " + detail::number_text(rate),
+                                                        {.kind = entity::parameter, .value = rate});
+                        }
                         double const area = pi * std::max(reach * reach - c.distance * c.distance, 0.0);
                         taken = unit_.fixed(rate * area * dt);
                         if (taken < -load) taken = -load;
@@ -187,9 +201,12 @@ private:
             }
         });
         points_.clear();
+        for (block const& b : blocks_) points_.insert(points_.end(), b.points.begin(), b.points.end());
+    }
+
+    void book_contacts() {
         wet_.assign(surface_.positions.size(), 0);
-        for (block const& b : blocks) {
-            points_.insert(points_.end(), b.points.begin(), b.points.end());
+        for (block const& b : blocks_) {
             report_.contacts += b.contacts.size();
             for (contact const& c : b.contacts) {
                 auto const& t = surface_.triangles[c.face];
@@ -212,6 +229,7 @@ private:
             }
         }
         if (!books_.load.empty()) {
+            std::size_t const n = fluid_.particle_count();
             std::unordered_set<std::uint64_t> alive;
             alive.reserve(n);
             for (std::size_t i = 0; i < n; ++i) alive.insert(id_of(i));
@@ -219,8 +237,9 @@ private:
         }
     }
 
+    /// Where curvature takes the vertices near the water to: `next_`.
     template <executor Executor>
-    void wear_by_curvature(double most, Executor const& threads) {
+    void displace(double most, Executor const& threads) {
         std::size_t const n = surface_.positions.size();
         double const influence = process_.influence > 0 ? process_.influence : mean_edge_;
         square_.resize(n);
@@ -253,9 +272,6 @@ private:
                 next_[v] = vec3{p[0] + d * way[0], p[1] + d * way[1], p[2] + d * way[2]};
             }
         });
-        book_difference();
-        for (std::size_t v = 0; v < n; ++v) wear_[v] += length(next_[v] - surface_.positions[v]);
-        std::swap(surface_.positions, next_);
     }
 
     /// Equation 9.7 with the erratum: inward normal and unit Laplacian, without what would lead outwards.
@@ -323,6 +339,8 @@ private:
     detail::near_water water_{};
     detail::volume_unit unit_{};
     detail::sediment_books books_{};
+    double ahead_ = 0;                    ///< s that the fluid is ahead of the surface by, after an exception
+    std::vector<block> blocks_{};
     std::vector<vec3> points_{};          ///< particles that touch
     std::vector<unsigned char> wet_{};
     std::vector<double> square_{};
