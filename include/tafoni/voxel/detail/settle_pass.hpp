@@ -138,8 +138,8 @@ public:
     }
 
 private:
-    static constexpr std::size_t round_size = 512;  ///< grains whose ways are found over one state of the grid
-    static constexpr std::size_t block_size = 32;   ///< grains of a round that one thread takes at once
+    static constexpr std::size_t round_size = 2048; ///< grains whose ways are found over one state of the grid
+    static constexpr std::size_t block_size = 64;   ///< grains of a round that one thread takes at once
     static constexpr std::size_t most_tiles = std::size_t{1} << 20;
 
     static constexpr std::uint64_t wary_bit = std::uint64_t{1} << 63;
