@@ -181,6 +181,22 @@ TEST_CASE("lids through the centres of voxels are counted on the side that rows 
     }
 }
 
+TEST_CASE("a sphere with hundreds of holes is its definition as well, small and wide ones side by side") {
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+        stream random(seed, stage::user, 7);
+        double const share = seed == 0 ? 0.1 : 0.02;
+        indexed_mesh const mesh = pierced(tafoni_test::icosphere(3), [&](vec3 const& p) {
+            double const draw = random.uniform01();
+            return draw > share && !(seed == 1 && p[2] > 0.6);
+        });
+        sparse_grid grid({.size = {18, 17, 19}, .spacing = vec3{0.13, 0.14, 0.12}, .origin = vec3{-1.171, -1.183, -1.127}});
+        CAPTURE(seed);
+        auto const report = fill_from_mesh(grid, mesh);
+        REQUIRE(report.holes > 10);
+        REQUIRE(wrong_voxels(grid, mesh) == 0);
+    }
+}
+
 TEST_CASE("half a sphere, whose lid passes far from its edges, is its definition too") {
     indexed_mesh const mesh = pierced(tafoni_test::icosphere(1), [](vec3 const& p) { return p[0] + 0.3 * p[1] + 0.1 * p[2] < 0.1; });
     plain_grid grid(frame_for(box_of(mesh), 41));

@@ -204,8 +204,8 @@ struct fill_from_mesh_fn {
     ///
     /// Vertices at equal places count as one; those that no face uses are passed over, and faces of four corners
     /// and more are cut by `triangulate`. The number is exact but for 1e-9, and the bits are the same everywhere.
-    /// O(n log n + crossings log crossings) as for a solid, plus O(edges of holes) per brick and per voxel near the
-    /// lids: where the number is 1/2, and there only.
+    /// O(n log n + crossings log crossings) as for a solid, plus O(log holes + edges of near holes) per
+    /// brick and per voxel near the lids: where the number is 1/2, and there only.
     /// \throws invalid_input  `non_finite_vertex`, `index_out_of_range`, `degenerate_face`, `size_overflow`; as
     ///         `grid_frame::validate`; `out_of_range` for a surface 2^38 voxels away.
     /// \throws bad_topology  `inverted_orientation` where the capped surface encloses a negative volume.

@@ -23,11 +23,13 @@ namespace tafoni::detail {
 /// the open one [Jacobson et al. 2013] is 1/2 or more.
 ///
 /// The open surface is the capped one less its caps, so its number is a whole one, known from rows, less the
-/// share S of the full sphere that the caps take up. S is smooth off the caps, and its gradient is
-/// at most sum(length / distance^2) / 4 pi over the edges of the holes (Biot and Savart's law): where that
-/// bound keeps S within one level all over a block, one evaluation decides the block. Others are halved, down to
-/// single voxels. No centre of a voxel may lie on a cap, where S jumps: `cap_holes` puts the apexes out of
-/// the way. Asked as `fill_bricks` does.
+/// share S of the full sphere that the caps take up. S is smooth off the caps. Seen from far enough, a cluster of holes
+/// is one dipole at its middle [Barill et al. 2018], with an error of at most area radius / (2 pi distance^3) and a
+/// gradient of at most 2 area / (4 pi distance^3); of nearer holes the gradient is at most
+/// sum(length / distance^2) / 4 pi over their edges (Biot and Savart's law). Where these bounds keep S within one level
+/// all over a block, one evaluation decides the block. Others are halved, down to single voxels, which the sum over
+/// all caps decides where bounds do not. No centre of a voxel may lie on a cap, where S jumps: `cap_holes` puts
+/// the apexes out of the way. Asked as `fill_bricks` does.
 class hole_levels {
 public:
     /// A triangle of a cap: the apex of its hole, and an edge of the hole, as indices of `corners`.
@@ -58,16 +60,17 @@ public:
         offsets_.resize(places_.size());
         lengths_.resize(places_.size());
         seen_.resize(places_.size(), 0);
-        active_[0].resize(caps_.size());
-        std::iota(active_[0].begin(), active_[0].end(), 0U);
+        all_.resize(caps_.size());
+        std::iota(all_.begin(), all_.end(), 0U);
+        cluster_holes();
     }
 
     [[nodiscard]] bool is_uniform(voxel low) {
         if (caps_.empty()) return true;
         low_ = low;
-        if (decided(low, 32, 0)) return true;
+        if (decided(low, 32)) return true;
         levels_.resize(32768);
-        split(low, 32, 1);
+        split(low, 32);
         return false;
     }
     [[nodiscard]] int uniform() const noexcept { return level_; }
@@ -104,14 +107,9 @@ private:
     }
     [[nodiscard]] static int level_of(double share) noexcept { return static_cast<int>(std::ceil(share + (0.5 - tie))); }
 
-    /// `depth`: halvings that led here and one; the caps that count are `active_[depth]`.
-    void split(voxel low, std::int32_t edge, std::size_t depth) {
+    void split(voxel low, std::int32_t edge) {
         if (edge == 1) {
-            vec3 const p = centre_of(in_rows(low));
-            double const here = share(p, active_[depth]);
-            int level = level_of(here - blur_[depth]);
-            if (level != level_of(here + blur_[depth])) level = level_of(share(p, active_[0]));
-            set(low, 1, level);
+            set(low, 1, level_at(centre_of(in_rows(low))));
             return;
         }
         std::int32_t const half = edge / 2;
@@ -121,14 +119,21 @@ private:
                 static_cast<std::size_t>(at.z) >= size_[2]) {
                 continue;
             }
-            if (half == 1) {
-                split(at, half, depth);
-            } else if (decided(at, half, depth)) {
+            if (half > 1 && decided(at, half)) {
                 set(at, half, level_);
             } else {
-                split(at, half, depth + 1);
+                split(at, half);
             }
         }
+    }
+    [[nodiscard]] int level_at(vec3 const& p) {
+        for (double care = 1; care < 1000; care *= 16) {
+            view const seen = look(p, 0, care);
+            double const change = seen.blur * 1.001 + 0x1p-36;
+            int const level = level_of(seen.share - change);
+            if (level == level_of(seen.share + change)) return level;
+        }
+        return level_of(share(p, all_));
     }
     void set(voxel low, std::int32_t edge, int level) {
         auto const x = static_cast<std::size_t>(low.x - low_.x);
@@ -140,47 +145,157 @@ private:
         }
     }
 
-    /// Whether one level holds for all voxels of a block; `level_` is it then. Else `active_[depth + 1]` holds
-    /// those of `active_[depth]` that matter inside, and `blur_[depth + 1]` what all others can add at most: a
-    /// cap is seen as no more than its area over the squared distance. O(active caps).
-    bool decided(voxel low, std::int32_t edge, std::size_t depth) {
+    /// Whether one level holds for all voxels of a block; `level_` is it then.
+    bool decided(voxel low, std::int32_t edge) {
         voxel const high{std::min(low.x + edge, static_cast<std::int32_t>(size_[0])) - 1,
                          std::min(low.y + edge, static_cast<std::int32_t>(size_[1])) - 1,
                          std::min(low.z + edge, static_cast<std::int32_t>(size_[2])) - 1};
         vec3 const a = centre_of(in_rows(low));
         vec3 const b = centre_of(in_rows(high));
-        vec3 const centre = vec3(0.5 * (a + b));
         double const radius = 0.5 * length(b - a) + 0x1p-20;
-        double const negligible = 0.05 / static_cast<double>(caps_.size());
-        std::vector<std::uint32_t>& kept = active_[depth + 1];
-        kept.clear();
-        double blur = blur_[depth];
-        double slope = far_slope_[depth];
-        double far_slope = slope;
+        view const seen = look(vec3(0.5 * (a + b)), radius, 1);
+        if (!seen.smooth) return false;
+        double const change = seen.slope * radius / (4 * pi) * 1.001 + seen.blur * 1.001 + 0x1p-36;
+        level_ = level_of(seen.share - change);
+        return level_ == level_of(seen.share + change);
+    }
+
+    /// S at the middle of a ball within `blur`, and 4 pi times what its gradient is at most in the ball; of no use where
+    /// not `smooth`. The more care the less blur. O(log holes + caps of near holes).
+    struct view {
+        double share = 0;
+        double blur = 0;
+        double slope = 0;
         bool smooth = true;
-        for (std::uint32_t const t : active_[depth]) {
-            shape const& s = shapes_[t];
-            double const off = length(centre - s.centre) - radius - s.radius;
-            if (off > 0 && s.double_area < 8 * pi * negligible * off * off) {
-                blur += s.double_area / (8 * pi * off * off);
-                far_slope += s.edge / (off * off);
-                slope += s.edge / (off * off);
+    };
+    view look(vec3 const& p, double radius, double care) {
+        view out;
+        ++round_;
+        double halves = 0;
+        double const negligible = 0.05 / (care * static_cast<double>(caps_.size()));
+        due_.assign(1, 0);
+        while (!due_.empty()) {
+            cluster const& c = clusters_[due_.back()];
+            due_.pop_back();
+            vec3 const there = c.centre - p;
+            double const far_off = length(there);
+            double const off = far_off - radius - c.radius;
+            if (off > 0 && off > 4 * care * c.radius) {
+                double const cube = off * off * off;
+                out.share += dot(c.dipole, there) / (4 * pi * far_off * far_off * far_off);
+                out.blur += c.area * c.radius / (2 * pi * cube);
+                out.slope += 2 * c.area / cube;
                 continue;
             }
-            kept.push_back(t);
-            if (!smooth) continue;
-            double const distance = segment_distance(centre, places_[caps_[t][1]], places_[caps_[t][2]]) - radius;
-            if (distance > 0) slope += s.edge / (distance * distance);
-            // Beyond half a sphere on either side no level can hold.
-            smooth = distance > 0 && slope * radius <= 2 * pi && !reaches(centre, radius, t);
+            if (c.second != 0) {
+                due_.push_back(c.second);
+                due_.push_back(c.first);
+                continue;
+            }
+            for (std::uint32_t n = c.begin; n < c.end; ++n) {
+                std::uint32_t const t = by_hole_[n];
+                shape const& s = shapes_[t];
+                double const gap = length(p - s.centre) - radius - s.radius;
+                if (gap > 0 && s.double_area < 8 * pi * negligible * gap * gap) {
+                    out.blur += s.double_area / (8 * pi * gap * gap);
+                    out.slope += s.edge / (gap * gap);
+                    continue;
+                }
+                halves += half_of(t, p);
+                if (radius == 0) continue;
+                double const distance = segment_distance(p, places_[caps_[t][1]], places_[caps_[t][2]]) - radius;
+                if (distance > 0) out.slope += s.edge / (distance * distance);
+                // Beyond half a sphere on either side no level can hold.
+                out.smooth = distance > 0 && out.slope * radius <= 2 * pi && !reaches(p, radius, t);
+                if (!out.smooth) return out;
+            }
         }
-        blur_[depth + 1] = blur;
-        far_slope_[depth + 1] = far_slope;
-        if (!smooth) return false;
-        double const change = slope * radius / (4 * pi) * 1.001 + blur * 1.001 + 0x1p-36;
-        double const here = share(centre, kept);
-        level_ = level_of(here - change);
-        return level_ == level_of(here + change);
+        out.share += halves / (2 * pi);
+        return out;
+    }
+
+    /// Holes that are seen as one from far away: all caps of a hole are in the same clusters.
+    struct cluster {
+        vec3 centre{0, 0, 0};
+        double radius = 0;
+        vec3 dipole{0, 0, 0};     ///< sum of area times normal
+        double area = 0;
+        std::uint32_t begin = 0;  ///< caps in `by_hole_`
+        std::uint32_t end = 0;
+        std::uint32_t first = 0;  ///< halves; of a single hole none
+        std::uint32_t second = 0;
+    };
+    /// O(caps log^2 holes).
+    void cluster_holes() {
+        if (caps_.empty()) return;
+        by_hole_ = all_;
+        std::sort(by_hole_.begin(), by_hole_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return caps_[a][0] != caps_[b][0] ? caps_[a][0] < caps_[b][0] : a < b;
+        });
+        struct hole {
+            std::uint32_t begin, end;
+        };
+        std::vector<hole> holes;
+        for (std::uint32_t n = 0; n < by_hole_.size(); ++n) {
+            if (n == 0 || caps_[by_hole_[n]][0] != caps_[by_hole_[n - 1]][0]) holes.push_back({n, n});
+            holes.back().end = n + 1;
+        }
+        struct part {
+            std::size_t begin, end;
+            std::uint32_t at;
+        };
+        auto const apex = [&](hole const& h) -> vec3 const& { return places_[caps_[by_hole_[h.begin]][0]]; };
+        clusters_.emplace_back();
+        // Halves are cut at the middle hole along the longest side of the box of their apexes; their caps stay together.
+        std::vector<std::uint32_t> order;
+        order.reserve(by_hole_.size());
+        std::vector<part> parts{{0, holes.size(), 0}};
+        while (!parts.empty()) {
+            part const now = parts.back();
+            parts.pop_back();
+            if (now.end - now.begin == 1) {
+                hole const& h = holes[now.begin];
+                clusters_[now.at].begin = static_cast<std::uint32_t>(order.size());
+                order.insert(order.end(), by_hole_.begin() + h.begin, by_hole_.begin() + h.end);
+                clusters_[now.at].end = static_cast<std::uint32_t>(order.size());
+                continue;
+            }
+            box3 box;
+            for (std::size_t h = now.begin; h < now.end; ++h) box.include(apex(holes[h]));
+            vec3 const extent = box.extent();
+            Eigen::Index const d = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
+            auto const from = holes.begin() + static_cast<std::ptrdiff_t>(now.begin);
+            std::sort(from, holes.begin() + static_cast<std::ptrdiff_t>(now.end), [&](hole const& a, hole const& b) {
+                return apex(a)[d] != apex(b)[d] ? apex(a)[d] < apex(b)[d] : a.begin < b.begin;
+            });
+            std::size_t const middle = now.begin + (now.end - now.begin) / 2;
+            auto const next = static_cast<std::uint32_t>(clusters_.size());
+            clusters_.resize(clusters_.size() + 2);
+            clusters_[now.at].first = next;
+            clusters_[now.at].second = next + 1;
+            parts.push_back({middle, now.end, next + 1});
+            parts.push_back({now.begin, middle, next});
+        }
+        by_hole_ = std::move(order);
+        // Halves are numbered after what they are halves of.
+        for (std::size_t n = clusters_.size(); n-- > 0;) measure(clusters_[n]);
+    }
+    void measure(cluster& c) {
+        if (c.second != 0) {
+            c.begin = clusters_[c.first].begin;
+            c.end = clusters_[c.second].end;
+        }
+        for (std::uint32_t n = c.begin; n < c.end; ++n) {
+            shape const& s = shapes_[by_hole_[n]];
+            c.area += 0.5 * s.double_area;
+            c.dipole += 0.5 * s.normal;
+            c.centre += vec3(0.5 * s.double_area * s.centre);
+        }
+        c.centre = c.area > 0 ? vec3(c.centre / c.area) : shapes_[by_hole_[c.begin]].centre;
+        for (std::uint32_t n = c.begin; n < c.end; ++n) {
+            shape const& s = shapes_[by_hole_[n]];
+            c.radius = std::max(c.radius, (length(s.centre - c.centre) + s.radius) * (1 + 0x1p-40));
+        }
     }
     /// Whether a cap comes into the ball.
     [[nodiscard]] bool reaches(vec3 const& p, double radius, std::size_t t) const noexcept {
@@ -208,25 +323,26 @@ private:
     double share(vec3 const& p, std::vector<std::uint32_t> const& which) {
         ++round_;
         double halves = 0;
-        for (std::uint32_t const t : which) {
-            auto const [i, j, k] = caps_[t];
-            for (std::uint32_t const v : caps_[t]) {
-                if (seen_[v] == round_) continue;
-                seen_[v] = round_;
-                offsets_[v] = places_[v] - p;
-                lengths_[v] = length(offsets_[v]);
-            }
-            vec3 const& a = offsets_[i];
-            vec3 const& b = offsets_[j];
-            vec3 const& c = offsets_[k];
-            // Half of the solid angle of a triangle [van Oosterom, Strackee 1983].
-            double const volume = dot(a, shapes_[t].normal);
-            double const rest = lengths_[i] * lengths_[j] * lengths_[k] + dot(a, b) * lengths_[k] +
-                                dot(b, c) * lengths_[i] + dot(c, a) * lengths_[j];
-            double const half = angle(std::fabs(volume), rest);
-            halves += volume < 0 ? -half : half;
-        }
+        for (std::uint32_t const t : which) halves += half_of(t, p);
         return halves / (2 * pi);
+    }
+    /// Half of the solid angle of a cap [van Oosterom, Strackee 1983]; p stays the same for one `round_`.
+    double half_of(std::uint32_t t, vec3 const& p) {
+        auto const [i, j, k] = caps_[t];
+        for (std::uint32_t const v : caps_[t]) {
+            if (seen_[v] == round_) continue;
+            seen_[v] = round_;
+            offsets_[v] = places_[v] - p;
+            lengths_[v] = length(offsets_[v]);
+        }
+        vec3 const& a = offsets_[i];
+        vec3 const& b = offsets_[j];
+        vec3 const& c = offsets_[k];
+        double const volume = dot(a, shapes_[t].normal);
+        double const rest = lengths_[i] * lengths_[j] * lengths_[k] + dot(a, b) * lengths_[k] +
+                            dot(b, c) * lengths_[i] + dot(c, a) * lengths_[j];
+        double const half = angle(std::fabs(volume), rest);
+        return volume < 0 ? -half : half;
     }
     /// atan2(y, x) for y >= 0, from sums that every machine rounds alike.
     [[nodiscard]] static double angle(double y, double x) noexcept {
@@ -246,9 +362,10 @@ private:
     std::vector<double> lengths_{};
     std::vector<std::uint64_t> seen_{};  ///< the evaluation that offset and length of a corner belong to
     std::uint64_t round_ = 0;
-    std::array<std::vector<std::uint32_t>, 8> active_{};
-    std::array<double, 8> blur_{};
-    std::array<double, 8> far_slope_{};  ///< what edges of caps that do not count add to the gradient, at most
+    std::vector<std::uint32_t> all_{};      ///< caps in the order in which they are summed
+    std::vector<std::uint32_t> by_hole_{};  ///< caps, those of a cluster together
+    std::vector<cluster> clusters_{};       ///< the first holds all
+    std::vector<std::uint32_t> due_{};
     voxel low_{};
     int level_ = 1;
     std::vector<int> levels_{};
