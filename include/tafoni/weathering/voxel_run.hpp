@@ -172,6 +172,13 @@ public:
         return core_.rates.cavernous(v.bubble, air_of(v)) / v.durability;
     }
 
+    /// Curvature as the run measures it, in [-1, 1], > 0 on what protrudes: the share of air less that of rock; with
+    /// `flat_excess` measured from flat rock, which shows 0.
+    [[nodiscard]] double curvature(skin_voxel const& v) const noexcept {
+        bool const flat = core_.options.measure == curvature_measure::flat_excess;
+        return flat ? core_.rates.flat_excess(v.bubble, air_of(v)) : 2 * v.air_share - 1;
+    }
+
     /// Replaces the policies between steps; decimation stays. Strong guarantee. O(bricks + skin voxels in bubbles).
     void replace(Process process) {
         process.validate();

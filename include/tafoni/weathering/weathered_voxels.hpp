@@ -16,7 +16,7 @@ namespace tafoni {
 
 /// Numbers of the voxels that vertices stand for; all arrays parallel to the mesh's positions.
 struct voxel_attributes {
-    std::vector<double> curvature{};   ///< air less rock in the bubble, in [-1, 1]: 0 on a plane, > 0 on what protrudes
+    std::vector<double> curvature{};   ///< `voxel_run::curvature`, in [-1, 1]: > 0 on what protrudes
     std::vector<double> durability{};
     std::vector<double> decimation{};  ///< per cent that are left, <= 100
     /// What cavernous weathering will take, as the paper shows it beforehand: the negative part of the curvature
@@ -56,7 +56,7 @@ private:
         threads.for_blocks(voxels.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 skin_voxel const v = run.look(voxels[i]);
-                double const curvature = 2 * v.air_share - 1;
+                double const curvature = run.curvature(v);
                 out.curvature[i] = curvature;
                 out.durability[i] = v.durability;
                 out.decimation[i] = v.decimation;

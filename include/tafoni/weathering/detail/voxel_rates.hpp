@@ -52,11 +52,13 @@ public:
     template <class Process>
     void read(Process const& process, voxel_options const& options) {
         std::vector<std::size_t> first;
+        std::vector<bubble_of> bubbles;
         std::vector<double> spheroidal;
         std::vector<double> cavernous;
         for (bubble_stencil const& s : process.bubbles.stencils()) {
             first.push_back(spheroidal.size());
             flat_air const flat = flat_air::of(s, options.skin_depth);
+            bubbles.push_back({s.size(), flat});
             for (std::uint32_t air = 0; air <= s.size(); ++air) {
                 auto const [c, hollow] = measured(options.measure, air, s.size(), flat);
                 spheroidal.push_back(checked(process.rate, c));
@@ -65,6 +67,7 @@ public:
         }
         std::vector<double> both(spheroidal.size(), 0);
         first_ = std::move(first);
+        bubbles_ = std::move(bubbles);
         spheroidal_ = std::move(spheroidal);
         cavernous_ = std::move(cavernous);
         both_ = std::move(both);
@@ -85,10 +88,19 @@ public:
     [[nodiscard]] double cavernous(std::size_t bubble, std::uint32_t air) const noexcept {
         return cavernous_[first_[bubble] + air];
     }
+    /// What the air differs by from what flat rock shows, in [-1, 1].
+    [[nodiscard]] double flat_excess(std::size_t bubble, std::uint32_t air) const noexcept {
+        auto const [c, hollow] = measured(curvature_measure::flat_excess, air, bubbles_[bubble].size, bubbles_[bubble].flat);
+        return c - hollow;
+    }
     [[nodiscard]] std::span<double const> spheroidal_table() const noexcept { return spheroidal_; }
     [[nodiscard]] std::span<double const> cavernous_table() const noexcept { return cavernous_; }
 
 private:
+    struct bubble_of {
+        std::uint32_t size = 0;
+        flat_air flat{};
+    };
     struct arguments {
         double spheroidal = 0;
         double cavernous = 0;
@@ -118,6 +130,7 @@ private:
     }
 
     std::vector<std::size_t> first_{};  ///< entry of each bubble's count of 0
+    std::vector<bubble_of> bubbles_{};
     std::vector<double> spheroidal_{};
     std::vector<double> cavernous_{};
     std::vector<double> both_{};
