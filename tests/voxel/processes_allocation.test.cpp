@@ -122,7 +122,7 @@ TEST_CASE("C2: an executor that throws at any call leaves grains and rocks where
         REQUIRE(states_of(g) == (failed ? before : states_of(wanted)));
         REQUIRE(changes == (failed ? std::vector<voxel_change>{} : told));
     }
-    CHECK(calls > 3);
+    CHECK(calls > 1);
 
     rockfall_options const ground{.sides = {ground_side::loose, ground_side::loose, ground_side::loose, ground_side::loose, ground_side::ground, ground_side::loose}};
     for (int k = 0; k < 2; ++k) {
