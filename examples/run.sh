@@ -1,8 +1,10 @@
 #!/bin/sh
-# Weathers rocks and draws them, in about two minutes on two cores, once it is built:
+# Weathers rocks and draws them, in about five minutes on two cores, once it is built:
 #   out/frost.png       a rock weathered by frost: four states, coloured by link life
 #   out/frost_plot.png  its volume and broken links over the paths
 #   out/voxel.png       a hoodoo under the durability profile of examples/hoodoo.txt, from cube to sphere, a cavern
+#   out/curvature.png   a cube, a hand and a bust that wear by their curvature, and a crack
+#   out/hydraulic.png   water in a gorge, over a bust and on a terrain
 #   sh examples/run.sh                 the built-in outcrop
 #   sh examples/run.sh FILE            your mesh (.obj .ply .stl) or elevation grid (.asc)
 #   --up x|y|z     which axis of the model points up (default z)
@@ -11,7 +13,7 @@
 #   --sites SPEC   where shards grow from (default: blocks between bedding and two joint sets)
 #   --core SPEC    cells that never fall (default: the lowest 12 %; sides and base of a grid)
 #   --small        few shards and small pictures, for a quick look; so does TAFONI_SMALL=1
-#   --only NAME    frost or voxel
+#   --only NAME    frost, voxel, curvature or hydraulic
 #   --out DIR      where to write (default out)      --build DIR    where to build (default build/examples)
 #   --no-install   never call apt-get                --jobs N       parallel jobs (default: all cores)
 #   --weather FILE a tool that is built already
@@ -46,7 +48,7 @@ while [ $# -gt 0 ]; do
         --jobs) shift; jobs=$1 ;;
         --weather) shift; weather=$1 ;;
         --only) shift; only=$1 ;;
-        -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+        -h | --help) sed -n '2,20s/^# \{0,1\}//p' "$0"; exit 0 ;;
         -*) echo "examples/run.sh: unknown option $1" >&2; exit 2 ;;
         *) input=$1 ;;
     esac
@@ -162,8 +164,7 @@ legend() { # FILE.png left right colours...
 
 letters=$((panel / 17))
 case $only in
-    "" | frost | voxel) ;;
-    *) echo "examples/run.sh: --only $only: frost or voxel" >&2; exit 2 ;;
+    "" | frost | voxel | curvature | hydraulic) ;;
+    *) echo "examples/run.sh: --only $only: frost, voxel, curvature or hydraulic" >&2; exit 2 ;;
 esac
-[ "$only" = voxel ] || . "$root/examples/pictures/frost.sh"
-[ "$only" = frost ] || . "$root/examples/pictures/voxel.sh"
+for subject in ${only:-frost voxel curvature hydraulic}; do . "$root/examples/pictures/$subject.sh"; done

@@ -104,7 +104,7 @@ void hydraulic_session::settle() {
     w.viscosity = a_.viscosity >= 0 ? a_.viscosity : 0.02 * speed * w.radius;
     double const stress = speed / edge;  // of water as thick as an edge at that speed
     w.tau_c = a_.tau_c.empty() ? text_of(0.1 * stress) : a_.tau_c;
-    w.k = a_.k.empty() ? text_of(0.04 * size / (fall * stress)) : a_.k;
+    w.k = a_.k.empty() ? text_of(0.015 * size / (fall * stress)) : a_.k;
     w.influence = a_.influence > 0 ? a_.influence : edge;
     w.step = a_.step >= 1 ? a_.step : a_.fluid == "sph" ? 100 : 10;
     int const axis = axis_of(w.up);
