@@ -38,7 +38,7 @@ coarse=1
 [ $small = no ] || coarse=3
 row=""
 facing=+Z
-wear_shape cube "0.5 -1 0.45" "0 0 1" 6 builtin:cube:squares=$((20 / coarse))
+wear_shape cube "0.5 -1 0.45" "0 0 1" 6 builtin:cube
 wear_shape hand "0.25 -1 0.15" "0 0 1" 60 builtin:hand:resolution=$((110 / coarse)) --power 2 --step 4
 # shellcheck disable=SC2086
 convert $row -background white -gravity south +append "$results/first.png"
@@ -53,7 +53,7 @@ case $input in
     builtin:* | *.asc | *.ASC) ;;
     *)
         model=$input
-        crack=""
+        crack=front
         facing=+$(echo "$up" | tr xyz XYZ)
         case $up in
             x) look="0.2 0.5 -1"; upwards="1 0 0" ;;
@@ -62,9 +62,27 @@ case $input in
         ;;
 esac
 wear_shape bust "$look" "$upwards" 40 "$model"
+# Down the front of the box of a model that is not ours; the tool takes the nearest vertices.
+if [ "$crack" = front ]; then
+    crack=$(awk -v up="$up" '
+        $1 == "v" { for (a = 1; a <= 3; ++a) { x = $(a + 1); if (!n || x < lo[a]) lo[a] = x; if (!n || x > hi[a]) hi[a] = x }; n = 1 }
+        END {
+            u = index("xyz", up)
+            side = up == "x" ? 2 : 1
+            front = 6 - u - side
+            ahead = up == "y" ? hi[front] : lo[front]
+            split("0 0.09 -0.03 0.1 0.02 0.13 0.04 0.11 -0.02", off, " ")
+            for (k = 1; k <= 9; ++k) {
+                p[u] = hi[u] - (0.02 + 0.08 * k) * (hi[u] - lo[u])
+                p[side] = (lo[side] + hi[side]) / 2 + off[k] * (hi[side] - lo[side])
+                p[front] = ahead
+                printf "%s%.9g,%.9g,%.9g", (k > 1 ? "," : ""), p[1], p[2], p[3]
+            }
+        }' "$results/bust/snapshots/curvature_00000000.obj")
+fi
 if [ -n "$crack" ]; then
     "$weather" wrinkles "$results/bust/snapshots/curvature_$(printf '%08d' $middle).obj" -o "$results/crack" --profile groove \
-        --radius 0.022 --times 4 --through "$crack" --format vtp,obj --threads 0
+        --radius "$(awk -v s="$(side_of "$results/bust/snapshots/curvature_00000000.obj")" 'BEGIN { print 0.023 * s }')" --times 4 --through "$crack" --format vtp,obj --threads 0
     shoot "$results/crack/weathered.vtp" "$results/crack/crack.png" "$where" "$upwards" curvature "$range"
     caption "$results/crack/crack.png" "$box" "a crack carved"
     row="$row $results/crack/crack.png"

@@ -67,8 +67,9 @@ pour terrain $((300 / part)) "0.35 -1 1" "0 0 1" 40 $((400 / part)) "terrain" "u
 # shellcheck disable=SC2086
 legend "$results/bar.png" "curvature: hollow" ridge $bent
 # shellcheck disable=SC2086
-legend "$results/wet.png" "   water: none" much $wet
-convert "$results/bar.png" "$results/wet.png" -background white -gravity center +append "$results/bars.png"
+legend "$results/wet.png" "water: none" much $wet
+convert "$results/bar.png" "$results/wet.png" -bordercolor white -border $((panel / 20))x0 -background white -gravity center \
+    +append "$results/bars.png"
 stack "$out/hydraulic.png" "$results/gorge.png" "$results/bust.png" "$results/terrain.png" "$results/bars.png"
 rm -f "$results"/*.png
 panel=$full
