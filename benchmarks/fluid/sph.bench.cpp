@@ -2,6 +2,7 @@
 // threads. No package of Debian has a fluid of particles: the peer is the obvious loop over the same neighbours.
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/thread_pool.hpp>
+#include <tafoni/fluid/detail/visit_order.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/fluid/sph.hpp>
 
@@ -182,10 +183,14 @@ void affected(benchmark::State& state) {
         drops.push_back(vec3{x, y, height(x, y) + z});
     }
     mesh_boundary const walls(ground, faces, 0.5);
+    detail::visit_order order;
     std::size_t contacts = 0;
     for (auto _ : state) {
         contacts = 0;
-        for (vec3 const& p : drops) walls.for_each_contact(p, 0.5, [&](boundary_contact const&) { ++contacts; });
+        order.sort(walls, drops.size(), [&](std::size_t i) -> vec3 const& { return drops[i]; });
+        for (std::size_t k = 0; k < drops.size(); ++k) {
+            walls.for_each_contact(drops[order[k]], 0.5, [&](boundary_contact const&) { ++contacts; });
+        }
         benchmark::DoNotOptimize(contacts);
     }
     state.counters["contacts"] = static_cast<double>(contacts);

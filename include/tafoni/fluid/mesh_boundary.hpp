@@ -76,6 +76,16 @@ public:
                moved_.capacity();
     }
 
+    /// Blocks of 4 x 4 x 4 cells, and one for all outside: particles are asked about fastest block by block.
+    [[nodiscard]] std::size_t block_count() const noexcept { return blocks(0) * blocks(1) * blocks(2) + 1; }
+    [[nodiscard]] std::size_t block_of(vec3 const& p) const noexcept {
+        std::size_t const c = cell_of(p);
+        if (c == outside) return block_count() - 1;
+        std::size_t const y = c / size_[0] % size_[1];
+        std::size_t const z = c / size_[0] / size_[1];
+        return c % size_[0] / 4 + blocks(0) * (y / 4 + blocks(1) * (z / 4));
+    }
+
     /// As the concept asks; `radius` at most `reach()`. O(faces in a cell).
     template <class Visit>
     void for_each_contact(vec3 const& p, double radius, Visit const& visit) const {
@@ -200,6 +210,7 @@ private:
         visit(boundary_contact{.face = best, .normal = vec3{s * way[0], s * way[1], s * way[2]}, .distance = behind ? -l : l});
     }
 
+    [[nodiscard]] std::size_t blocks(std::size_t d) const noexcept { return (size_[d] + 3) / 4; }
     [[nodiscard]] std::size_t cells() const noexcept { return size_[0] * size_[1] * size_[2]; }
 
     void fill() {

@@ -7,6 +7,7 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/detail/visit_order.hpp>
 #include <tafoni/fluid/emitter.hpp>
 
 #include <algorithm>
@@ -65,8 +66,9 @@ public:
     template <fluid_boundary B, executor E>
     double step(B const& walls, E const& threads) {
         double const dt = time_step();
+        order_.sort(walls, drops_.size(), [&](std::size_t i) -> vec3 const& { return drops_[i].position; });
         threads.for_blocks(drops_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) move(drops_[i], walls, dt);
+            for (std::size_t k = begin; k < end; ++k) move(drops_[order_[k]], walls, dt);
         });
         for (drop& d : drops_) {
             bool inside = d.age < options_.lifetime;
@@ -132,6 +134,7 @@ private:
     box_sink sink_;
     rain_options options_;
     std::vector<drop> drops_{};
+    detail::visit_order order_{};
     std::uint64_t next_id_ = 0;
 };
 

@@ -300,7 +300,8 @@ private:
     template <fluid_boundary B>
     [[nodiscard]] extremes add_forces(B const& walls, std::size_t from, std::size_t to) {
         extremes out;
-        for (std::size_t i = from; i < to; ++i) {
+        for (std::size_t k = from; k < to; ++k) {
+            std::size_t const i = grid_.order()[k];
             vec3 const p = position(i);
             vec3 const v = velocity(i);
             vec3 a = options_.gravity;

@@ -8,6 +8,7 @@
 #include <tafoni/curvature/displacement.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/detail/visit_order.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/geometry/refine_faces.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
@@ -166,9 +167,11 @@ private:
         std::size_t const n = fluid_.particle_count();
         blocks_.assign((n + particle_grain - 1) / particle_grain, {});
         double const reach = fluid_.reach();
+        order_.sort(walls_[0], n, [&](std::size_t i) { return fluid_.position(i); });
         threads.for_blocks(n, particle_grain, [&](std::size_t begin, std::size_t end) {
             block& out = blocks_[begin / particle_grain];
-            for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t k = begin; k < end; ++k) {
+                std::size_t const i = order_[k];
                 vec3 const p = fluid_.position(i);
                 bool touches = false;
                 std::int64_t load = 0;
@@ -341,6 +344,7 @@ private:
     detail::sediment_books books_{};
     double ahead_ = 0;                    ///< s that the fluid is ahead of the surface by, after an exception
     std::vector<block> blocks_{};
+    detail::visit_order order_{};
     std::vector<vec3> points_{};          ///< particles that touch
     std::vector<unsigned char> wet_{};
     std::vector<double> square_{};
