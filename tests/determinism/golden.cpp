@@ -8,6 +8,10 @@
 #include <tafoni/core/random_normal.hpp>
 #include <tafoni/core/sum.hpp>
 #include <tafoni/core/thread_pool.hpp>
+#include <tafoni/curvature/bubble_ratio.hpp>
+#include <tafoni/curvature/cotangent.hpp>
+#include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/curvature/quadric_fit.hpp>
 #include <tafoni/decomposition/grid_sites.hpp>
 #include <tafoni/decomposition/hexagonal_sites.hpp>
 #include <tafoni/decomposition/poisson_sites.hpp>
@@ -23,9 +27,11 @@
 #include <tafoni/field/durability_profile.hpp>
 #include <tafoni/voxel/bubble_mixture.hpp>
 #include <tafoni/voxel/bubble_shapes.hpp>
+#include <tafoni/weathering/curvature_run.hpp>
 #include <tafoni/weathering/frost_presets.hpp>
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/weathered_voxels.hpp>
+#include <tafoni/weathering/wrinkles.hpp>
 
 #include <bit>
 #include <cinttypes>
@@ -313,6 +319,67 @@ void voxels_by_events(fingerprint& f) {
     add_voxels(f, run);
 }
 
+/// A dented ball, from roots and our own noise only.
+tafoni::triangle_surface dented(int level) {
+    tafoni::gradient_noise const rough{.seed = 21, .frequency = 2.3};
+    auto const ball = tafoni_test::icosphere(level);
+    tafoni::triangle_surface s{.positions = ball.positions, .triangles = {}};
+    for (auto& p : s.positions) {
+        double const r = 1 + 0.3 * rough(p);
+        p = tafoni::vec3{r * p[0], r * p[1], r * p[2]};
+    }
+    for (std::size_t f = 0; f < ball.face_count(); ++f) s.triangles.push_back({ball.face(f)[0], ball.face(f)[1], ball.face(f)[2]});
+    return s;
+}
+void add_surface(fingerprint& f, tafoni::triangle_surface const& s) {
+    for (auto const& p : s.positions) f.add(p);
+    for (auto const& t : s.triangles) {
+        for (auto const c : t) f.add(c);
+    }
+}
+
+void curvature_by_estimators(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    auto s = dented(3);
+    s.triangles.resize(s.triangles.size() - 37);  // open
+    auto const add = [&](auto const& estimator, auto const& threads) {
+        for (double const h : tafoni::estimate_curvature(s, estimator, threads)) f.add(h);
+    };
+    add(tafoni::tensor_fit{}, tafoni::inline_executor{});
+    add(tafoni::tensor_fit{}, pool);
+    add(tafoni::cotangent{}, tafoni::inline_executor{});
+    add(tafoni::cotangent{}, pool);
+    add(tafoni::quadric_fit{}, pool);
+    add(tafoni::bubble_ratio{}, pool);
+}
+void weathered_by_curvature(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    tafoni::curvature_run run(dented(4),
+                              tafoni::curvature_weathering{.direction = tafoni::blended_direction{},
+                                                           .durability = tafoni::gradient_noise{.seed = 4, .frequency = 3}},
+                              {.power = 2.5, .small_edge = 0.4, .check_every = 8});
+    run.run(20, {}, pool);
+    add_surface(f, run.surface());
+    for (double const w : run.wear()) f.add(w);
+    for (auto const v : run.new_vertex()) f.add(v.value);
+    f.add(run.report().edges_collapsed);
+    f.add(run.report().removed_volume);
+    tafoni::curvature_run cubed(dented(3));
+    cubed.run(15);
+    for (std::byte const b : cubed.checkpoint()) f.add(std::to_integer<unsigned>(b));
+}
+void wrinkles(fingerprint& f) {
+    auto const s = dented(3);
+    std::vector<tafoni::wrinkle> const lines{
+        {.controls = {tafoni::vertex_index{0U}, tafoni::vertex_index{40U}, tafoni::vertex_index{7U}}, .radius = 0.2},
+        {.controls = {tafoni::vertex_index{3U}, tafoni::vertex_index{9U}}, .radius = 0.15, .strength = -2,
+         .profile = tafoni::wrinkle_profile::groove}};
+    std::vector<tafoni::enlargement> const swellings{{.centre = tafoni::vertex_index{100U}, .radius = 0.4}};
+    tafoni::wrinkle_pattern const pattern(s, lines, swellings);
+    add_surface(f, pattern.wear(s.positions, 3));
+    for (double const d : pattern.displacement()) f.add(d);
+}
+
 }  // namespace
 
 int main() {
@@ -332,4 +399,7 @@ int main() {
     print("voxels_by_steps", voxels_by_steps);
     print("voxels_on_threads", voxels_on_threads);
     print("voxels_by_events", voxels_by_events);
+    print("curvature_by_estimators", curvature_by_estimators);
+    print("weathered_by_curvature", weathered_by_curvature);
+    print("wrinkles", wrinkles);
 }

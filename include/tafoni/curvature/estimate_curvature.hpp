@@ -7,6 +7,7 @@
 #include <tafoni/curvature/tensor_fit.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace tafoni {
@@ -15,10 +16,20 @@ namespace detail {
 
 struct estimate_curvature_fn {
     /// H per vertex, 1 / length unit, positive on ridges. O(vertices + faces) beside the estimator's own cost.
-    /// \throws invalid_input  as `triangle_surface::copy_of`.
+    /// \throws invalid_input  as `triangle_surface::copy_of`; `out_of_range` for a box longer than 2^200 or, but not a
+    ///         point, shorter than 2^-200.
     template <polygon_mesh M, curvature_estimator Estimator = tensor_fit, executor E = inline_executor>
     [[nodiscard]] std::vector<double> operator()(M const& mesh, Estimator const& estimator = {}, E const& executor = {}) const {
         triangle_surface const s = triangle_surface::copy_of(mesh);
+        box3 box;
+        for (vec3 const& p : s.positions) box.include(p);
+        vec3 const e = s.positions.empty() ? vec3{0, 0, 0} : box.extent();
+        double const extent = std::max({e[0], e[1], e[2]});
+        if (!(extent <= 0x1p200 && (extent == 0 || extent >= 0x1p-200))) {
+            fail<invalid_input>(errc::out_of_range, "estimate_curvature: the mesh is too large or too small: its box must be "
+                                                    "between 2^-200 and 2^200 long",
+                                {.kind = entity::vertex, .value = extent, .limit = 0x1p200});
+        }
         vertex_rings const rings(s.positions.size(), s.triangles);
         std::vector<double> mean(s.positions.size());
         estimator(surface_view{.positions = s.positions, .triangles = s.triangles, .rings = &rings}, mean, executor);

@@ -88,7 +88,9 @@ struct triangle_sides {
     double bb = 0;
     double ab = 0;      ///< their products
     double det = 0;     ///< (2 area)^2
-    bool valid = false; ///< three different corners, and the angle between a and b is no less than about 1e-10
+    /// Three different corners, the angle between a and b is no less than about 1e-10, and the sides are no shorter
+    /// than about 1e-70: weights by 1 / side^4 are finite.
+    bool valid = false;
 
     triangle_sides() = default;
     triangle_sides(surface_view const& s, std::size_t f) noexcept {
@@ -100,7 +102,7 @@ struct triangle_sides {
         bb = dot(b, b);
         ab = dot(a, b);
         det = squared_length(cross(a, b));
-        valid = det > 1e-20 * (aa * bb) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+        valid = aa * bb > 1e-280 && det > 1e-20 * (aa * bb) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     }
     /// Squared side opposite to corner 0.
     [[nodiscard]] double cc() const noexcept { return squared_length(b - a); }
