@@ -150,7 +150,9 @@ private:
 
 struct collapse_short_edges_fn {
     /// Collapses edges shorter than `threshold` into their middle until none is left that may be, the shortest
-    /// first; a closed manifold stays one, of the same genus. O(faces) per pass, about log(edges to collapse) passes.
+    /// first; a closed manifold stays one, of the same genus. A triangle goes with its short side; a flat one whose
+    /// sides are all long stays: nothing near it is small, it counts for no curvature, and to remove it would take a
+    /// vertex of its neighbours'. O(faces) per pass, about log(edges to collapse) passes.
     /// \throws invalid_input  `bad_parameter` for a threshold that is negative or not finite, and as
     ///         `triangle_surface::validate`.
     collapse_report operator()(triangle_surface& surface, double threshold) const {

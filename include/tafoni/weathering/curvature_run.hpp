@@ -51,7 +51,8 @@ struct curvature_report {
 ///
 /// Coordinates are shifted and scaled by a power of two to about unit size at the door, so the result does not
 /// depend on the model's unit: the curvature of section 9.1 is scaled into [-1, 1] whenever it lies outside. The
-/// state depends on mesh, policies and options only, never on threads; n then m iterations equal n + m. When
+/// state depends on mesh, policies and options only, never on threads; n then m iterations equal n + m (where triangles
+/// are searched for cuts: unless the search at the end of n finds some that n + m would have lost again). When
 /// anything throws, the state is that after the last complete iteration.
 template <class Process = curvature_weathering<>>
 class curvature_run {

@@ -82,7 +82,7 @@ curvature_weathering(Parts...) -> curvature_weathering<detail::pick_part_t<detai
 
 /// What happens to the triangles while vertices move.
 enum class mesh_topology {
-    adapt,  ///< edges shorter than `small_edge` mean edges are collapsed after every iteration
+    adapt,  ///< edges shorter than `small_edge` mean edges, and their triangles, are removed after every iteration
     keep    ///< vertices and triangles keep their numbers, for hosts that need it
 };
 
@@ -91,7 +91,8 @@ struct curvature_options {
     double step_divisor = 10;    ///< x of equation 9.3: no vertex moves farther than a mean edge / x; >= 1
     double small_edge = 0.1;     ///< edges below this share of the mean edge are removed, in [0, 0.5]
     mesh_topology topology = mesh_topology::adapt;
-    std::uint32_t check_every = 0;  ///< iterations between searches for triangles that cut each other; 0 = never
+    /// Iterations between searches for triangles that cut each other, and once more at the end of every run; 0 = never.
+    std::uint32_t check_every = 0;
     std::uint32_t retries = 6;      ///< how often the step may be halved where the search finds some
 
     /// \throws invalid_input  `bad_parameter`.
