@@ -25,9 +25,9 @@ namespace tafoni {
 /// The faces of a mesh in the cells of a regular grid that they are within `reach` of [thesis, 8.1]. Views the
 /// mesh, which must outlive it; `refit` after its vertices have moved. Models `fluid_boundary`.
 ///
-/// A particle's question costs one cell. Cells are about as long as the larger of twice the reach and the mean
+/// A particle's question costs one cell. Cells are about as long as the larger of four times the reach and the mean
 /// edge; there are at most about 8 million of 4 bytes, and 28 bytes for every face in a cell. Faces are also in cells
-/// that they come to when vertices move by half the larger of reach and mean edge; until one moves farther
+/// that they come to when vertices move by a quarter of the larger of reach and mean edge; until one moves farther
 /// the cells stay. Answers depend on the mesh alone, never on when the cells were filled.
 class mesh_boundary {
 public:
@@ -254,8 +254,8 @@ private:
         size_ = {0, 0, 0};
         if (triangles_.empty()) return;
         double const edge = edges / (3 * static_cast<double>(triangles_.size()));
-        cell_ = std::max(2 * reach_, edge);
-        slack_ = 0.5 * std::max(reach_, edge);
+        cell_ = std::max(4 * reach_, edge);
+        slack_ = 0.25 * std::max(reach_, edge);
         double const rim = reach_ + slack_;
         vec3 const e = box.extent();
         lo_ = vec3{box.lo[0] - rim, box.lo[1] - rim, box.lo[2] - rim};
