@@ -2,7 +2,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/tafoni")
-set(file_sets FILE_SET HEADERS)
+set(file_sets FILE_SET HEADERS FILE_SET details)
 if(interop_headers)
     list(APPEND file_sets FILE_SET interop)
 endif()
