@@ -117,6 +117,7 @@
 #include <tafoni/io/read_vox.hpp>
 #include <tafoni/io/stl.hpp>
 #include <tafoni/io/vox_file.hpp>
+#include <tafoni/io/voxel_channels.hpp>
 #include <tafoni/io/vtk_xml.hpp>
 #include <tafoni/io/weathered_channels.hpp>
 #include <tafoni/io/write_obj.hpp>
