@@ -12,14 +12,25 @@
 #include <tafoni/voxel/single_bubble.hpp>
 #include <tafoni/weathering/detail/durability_role.hpp>
 
+#include <concepts>
+#include <cstddef>
+#include <span>
+
 namespace tafoni {
 
 namespace detail {
 struct bubbles_role {
+    struct refused {
+        refused() = default;
+        template <class T>
+        refused(T const&);
+        std::span<bubble_stencil const> stencils() const;
+        std::size_t choose(vec3 const&) const;
+    };
     template <class T>
     static constexpr bool fits = bubble_choice<T>;
     template <class T>
-    static constexpr bool resembles = requires { &T::choose; };
+    static constexpr bool resembles = bubble_shape<T> || requires { &T::choose; };
     template <class T>
     static void expect() {
         static_assert(fits<T>,
@@ -31,7 +42,7 @@ struct rate_role {
     template <class T>
     static constexpr bool fits = rate_function<T>;
     template <class T>
-    static constexpr bool resembles = false;
+    static constexpr bool resembles = std::invocable<T const&, double> && !std::invocable<T const&, vec3>;
     template <class T>
     static void expect() {
         static_assert(fits<T>, "`rate` takes a rate_function: double operator()(double) const");

@@ -6,6 +6,7 @@
 #include <tafoni/field/concepts.hpp>
 #include <tafoni/field/constant.hpp>
 
+#include <concepts>
 #include <type_traits>
 
 namespace tafoni::detail {
@@ -14,10 +15,11 @@ struct durability_role {
     template <class T>
     static constexpr bool fits = scalar_field<T>;
     template <class T>
-    static constexpr bool resembles = false;
+    static constexpr bool resembles = std::is_arithmetic_v<T> || std::invocable<T const&, vec3>;
     template <class T>
     static void expect() {
-        static_assert(fits<T>, "`durability` takes a scalar_field: double operator()(vec3 const&) const");
+        static_assert(fits<T>,
+                      "`durability` takes a scalar_field: tafoni::constant_field{0.02}, or double operator()(vec3 const&) const");
     }
 };
 
