@@ -194,7 +194,8 @@ public:
             throw;
         }
     }
-    /// One policy of a `voxel_weathering`, likewise.
+    /// One policy of a `voxel_weathering`, likewise; of the type that the run was made with, which `any_field` keeps
+    /// open for durability: `voxel_weathering{.durability = any_field(beds)}`.
     void replace(decltype(Process::bubbles) bubbles) {
         replace(Process{.bubbles = std::move(bubbles), .rate = core_.process.rate, .durability = core_.process.durability});
     }
