@@ -122,7 +122,7 @@ else
         built bench all
     else
         left_out="the plain clang build (its fast tests ran under the sanitizers), slow tests with clang,
-the headers of detail/ on their own, the paper's scenes and foreign libraries under the sanitizers, fuzzing of whole algorithms, benchmarks"
+the headers of detail/ on their own, the paper's scenes, real data and foreign libraries under the sanitizers, fuzzing of whole algorithms, benchmarks"
     fi
 
     if [ $mode = full ]; then
