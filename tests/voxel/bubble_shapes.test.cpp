@@ -128,3 +128,25 @@ TEST_CASE("bubbles without a size, or too large to be counted, are refused by na
         CHECK(std::string(e.what()).find("sphere_bubble.radius: got 50") != std::string::npos);
     }
 }
+
+TEST_CASE("laws::rate holds for the rates that ship and names what a broken one breaks") {
+    CHECK(laws::rate(cubic_rate{}).empty());
+    CHECK(laws::rate(linear_rate{.scale = 0.5}).empty());
+    CHECK(laws::rate(quartic_rate{}).empty());
+    CHECK(laws::rate(clamped_rate<>{.highest = 2}).empty());
+    struct negative {
+        double operator()(double c) const { return 0.5 - c; }
+    };
+    struct endless {
+        double operator()(double c) const { return 1 / c; }
+    };
+    struct moody {
+        int* asked;
+        double operator()(double c) const { return c + ++*asked; }
+    };
+    int asked = 0;
+    CHECK(laws::rate(negative{}) == std::vector<std::string>{"a rate is not negative"});
+    CHECK(laws::rate(endless{}) == std::vector<std::string>{"a rate is finite for every share of air in [0, 1]"});
+    CHECK(laws::rate(moody{&asked}) == std::vector<std::string>{"a rate is pure: equal questions get equal answers"});
+    CHECK(laws::rate(linear_rate{.scale = -1}).size() == 2);
+}

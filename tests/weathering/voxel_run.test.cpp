@@ -247,3 +247,12 @@ TEST_CASE("steps in one run, in two runs, and on any number of threads give the 
         }
     }
 }
+
+TEST_CASE("a number of steps is a schedule of one default phase") {
+    voxel_run few(lump({20, 20, 20}, 11), voxel_weathering{.bubbles = single_bubble{sphere_bubble{2}}});
+    voxel_run same(lump({20, 20, 20}, 11), voxel_weathering{.bubbles = single_bubble{sphere_bubble{2}}});
+    CHECK(few.run(80).steps == 80);
+    same.run({.phases = {{.steps = 80}}});
+    CHECK(few.report().voxels_vanished > 0);
+    CHECK(states(few.grid()) == states(same.grid()));
+}

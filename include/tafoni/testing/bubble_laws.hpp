@@ -1,10 +1,11 @@
 /// \file
-/// Law checks for bubbles and for the choice among them.
+/// Law checks for bubbles, for the choice among them, and for the rate over what they find.
 #ifndef TAFONI_TESTING_BUBBLE_LAWS_HPP
 #define TAFONI_TESTING_BUBBLE_LAWS_HPP
 
 #include <tafoni/core/random.hpp>
 #include <tafoni/voxel/bubble_choice.hpp>
+#include <tafoni/voxel/rates.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -95,6 +96,39 @@ template <bubble_choice C>
     }
     if (!pure) broken.push_back("a choice is pure: equal questions get equal answers");
     if (!below) broken.push_back("choose answers an index of one of the bubbles");
+    return broken;
+}
+
+/// Rate: finite and >= 0 on [0, 1], equal answers to equal questions and from copies; it passes its own `validate`.
+/// O(samples).
+template <rate_function F>
+[[nodiscard]] std::vector<std::string> rate(F const& f, int samples = 1024) {
+    std::vector<std::string> broken;
+    if constexpr (requires { f.validate(); }) {
+        try {
+            f.validate();
+        } catch (invalid_input const& e) {
+            broken.push_back(std::string("the rate passes its own validate(); it says: ") + e.what());
+        }
+    }
+    F const copy(f);
+    std::vector<double> first;
+    bool finite = true;
+    bool positive = true;
+    for (int k = 0; k <= samples; ++k) {
+        first.push_back(f(double(k) / samples));
+        finite = finite && std::isfinite(first.back());
+        positive = positive && !(first.back() < 0);
+    }
+    bool pure = true;
+    for (int k = samples; k >= 0 && finite; --k) {  // again, from the other end
+        double const c = double(k) / samples;
+        double const r = first[static_cast<std::size_t>(k)];
+        pure = pure && f(c) == r && copy(c) == r;
+    }
+    if (!finite) broken.push_back("a rate is finite for every share of air in [0, 1]");
+    if (!positive) broken.push_back("a rate is not negative");
+    if (!pure) broken.push_back("a rate is pure: equal questions get equal answers");
     return broken;
 }
 

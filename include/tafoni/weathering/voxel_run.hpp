@@ -103,6 +103,12 @@ public:
         return report();
     }
 
+    /// Adds steps of one default phase: spheroidal weathering alone.
+    template <executor Executor = inline_executor>
+    voxel_report run(std::uint64_t steps, run_context const& context = {}, Executor const& threads = {}) {
+        return run(voxel_schedule{.phases = {{.steps = steps}}}, context, threads);
+    }
+
     /// Totals since the start. O(1).
     [[nodiscard]] voxel_report report() const noexcept {
         voxel_report r = core_.count;
