@@ -89,6 +89,58 @@ TEST_CASE("threads change no bit of the rain", "[threads]") {
     for (std::size_t n : {2U, 7U}) CHECK(one == rained(thread_pool(n)));
 }
 
+TEST_CASE("saved rain goes on to the bit, and takes no other's bytes") {
+    using bytes = std::vector<std::byte>;
+    triangle_surface const ground = floor_at(0.3);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.3);
+    box_emitter const from{.box = between(vec3{-8, -8, 4}, vec3{8, 8, 9}), .velocity = vec3{0, 1, -2}};
+    box_sink const keep{.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 12})};
+    rain_options const o{.particles = 70, .radius = 0.3, .lifetime = 1.5, .seed = 4};
+    auto const saved = [](rain_particles const& r) {
+        tafoni::detail::byte_writer out;
+        r.save(out);
+        return out.bytes();
+    };
+    auto const load = [](rain_particles& r, bytes const& b) {
+        tafoni::detail::byte_reader in(b, "here");
+        r.load(in);
+        CHECK(in.left() == 0);
+    };
+    rain_particles r(from, keep, o);
+    for (int k = 0; k < 120; ++k) r.step(walls, inline_executor{});
+    bytes const then = saved(r);
+    rain_particles s(from, keep, o);
+    load(s, then);
+    CHECK(saved(s) == then);
+    for (int k = 0; k < 60; ++k) REQUIRE(r.step(walls, inline_executor{}) == s.step(walls, inline_executor{}));
+    CHECK(saved(r) == saved(s));
+    CHECK(r.id(0) >= 70);  // drops were born again
+
+    auto const refused = [&](rain_particles other) {
+        bytes const before = saved(other);
+        CHECK_THROWS_AS(load(other, then), invalid_input);
+        CHECK(saved(other) == before);
+    };
+    rain_options others[7]{o, o, o, o, o, o, o};
+    others[0].particles = 71;
+    others[1].radius = 0.4;
+    others[2].gravity[1] = 1;
+    others[3].friction = 2;
+    others[4].largest_step = 1;
+    others[5].lifetime = 2;
+    others[6].seed = 5;
+    for (rain_options const& other : others) refused({from, keep, other});
+    refused({from, {.keep = from.box}, o});
+    refused({{.box = from.box}, keep, o});
+    for (std::size_t k = 0; k < then.size(); k += 3) {
+        bytes damaged = then;
+        damaged[k] ^= std::byte{32};
+        REQUIRE_THROWS_AS(load(s, damaged), io_error);
+    }
+    for (std::size_t k = 0; k < then.size(); k += 17) REQUIRE_THROWS_AS(load(s, bytes(then.begin(), then.begin() + static_cast<long>(k))), io_error);
+    CHECK(saved(r) == saved(s));
+}
+
 TEST_CASE("rain out of range is refused by name") {
     box3 const b = between(vec3{0, 0, 0}, vec3{1, 1, 1});
     double const nan = std::numeric_limits<double>::quiet_NaN();

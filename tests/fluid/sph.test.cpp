@@ -363,6 +363,72 @@ TEST_CASE("threads change no bit of a fluid", "[threads]") {
     for (std::size_t n : {2U, 3U, 7U}) CHECK(one == poured(thread_pool(n)));
 }
 
+TEMPLATE_TEST_CASE("a saved fluid goes on to the bit, and takes no other's bytes", "", float, double) {
+    using bytes = std::vector<std::byte>;
+    box_emitter const from{.box = between(vec3{1, 1, 6}, vec3{3, 4, 8}), .velocity = vec3{1, 0, -5}};
+    box_sink const keep{.keep = between(vec3{0, 0, -2}, vec3{8, 3.6, 12})};
+    sph_options const o{.particles = 40, .spacing = 1};
+    triangle_surface const walls_of = tub(6, 3);
+    auto const saved = [](sph<TestType> const& f) {
+        tafoni::detail::byte_writer out;
+        f.save(out);
+        return out.bytes();
+    };
+    auto const load = [](sph<TestType>& f, bytes const& b) {
+        tafoni::detail::byte_reader in(b, "here");
+        f.load(in);
+        CHECK(in.left() == 0);
+    };
+    sph<TestType> f(from, keep, o);
+    mesh_boundary const walls(walls_of.positions, walls_of.triangles, f.reach());
+    for (int k = 0; k < 500; ++k) f.step(walls, inline_executor{});
+    bytes const then = saved(f);
+    sph<TestType> g(from, keep, o);
+    load(g, then);
+    CHECK(saved(g) == then);
+    for (int k = 0; k < 50; ++k) REQUIRE(f.step(walls, inline_executor{}) == g.step(walls, inline_executor{}));
+    CHECK(state(f) == state(g));
+    CHECK(saved(f) == saved(g));
+    CHECK(f.id(f.particle_count() - 1) > 40);  // emitters did run and sinks did take
+
+    auto const refused = [&](sph<TestType> other) {
+        bytes const before = saved(other);
+        CHECK_THROWS_AS(load(other, then), invalid_input);
+        CHECK(saved(other) == before);
+    };
+    auto more = o;
+    more.particles = 41;
+    auto thick = o;
+    thick.viscosity = 2e-6;
+    auto pulled = o;
+    pulled.toward = 1;
+    for (sph_options const& other : {more, thick, pulled}) refused({from, keep, other});
+    refused({from, everywhere(), o});
+    refused({{.box = from.box, .velocity = vec3{1, 0, -4}}, keep, o});
+    refused({std::vector<box_emitter>{from, from}, keep, o});
+    refused({std::vector<box_emitter>{}, keep, o});
+    for (std::size_t k = 0; k < then.size(); k += 5) {
+        bytes damaged = then;
+        damaged[k] ^= std::byte{4};
+        REQUIRE_THROWS_AS(load(g, damaged), io_error);
+    }
+    for (std::size_t k = 0; k < then.size(); k += 31) REQUIRE_THROWS_AS(load(g, bytes(then.begin(), then.begin() + static_cast<long>(k))), io_error);
+    using other_scalar = std::conditional_t<sizeof(TestType) == 4, double, float>;
+    sph<other_scalar> wide(from, keep, o);
+    tafoni::detail::byte_reader in(then, "here");
+    CHECK_THROWS_WITH(wide.load(in), Catch::Contains("another kind"));
+    CHECK(saved(f) == saved(g));
+
+    auto placed_one = placed<TestType>(cloud(4, 1, 0.3, 1), {.particles = 64, .spacing = 1});
+    sph<TestType> again(std::vector<box_emitter>{}, everywhere(), {.particles = 64, .spacing = 1});
+    load(again, saved(placed_one));
+    for (int k = 0; k < 5; ++k) {
+        placed_one.step(open_space{}, inline_executor{});
+        again.step(open_space{}, inline_executor{});
+    }
+    CHECK(state(placed_one) == state(again));
+}
+
 TEMPLATE_TEST_CASE("no particles, one point for all, and far too many near each other", "", float, double) {
     sph<TestType> none(std::vector<box_emitter>{}, everywhere(), {.particles = 0});
     CHECK(none.step(open_space{}, inline_executor{}) == none.options().largest_step);

@@ -7,6 +7,7 @@
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/detail/fluid_bytes.hpp>
 #include <tafoni/fluid/detail/visit_order.hpp>
 #include <tafoni/fluid/emitter.hpp>
 
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace tafoni {
@@ -27,6 +29,15 @@ struct rain_options {
     double largest_step = 0.05;        ///< s, > 0
     double lifetime = 30;              ///< s after which a drop has seeped away, > 0
     std::uint64_t seed = 0;
+
+    /// Calls `out.add` with each number in turn: what saved rain is compared by.
+    void describe(auto& out) const {
+        out.add(std::uint64_t{particles});
+        out.add(radius);
+        out.add(gravity);
+        for (double const v : {friction, largest_step, lifetime}) out.add(v);
+        out.add(seed);
+    }
 
     /// \throws invalid_input  `bad_parameter`.
     void validate() const {
@@ -80,13 +91,59 @@ public:
         return dt;
     }
 
+    /// All that decides the steps to come, and what the rain was told. O(particles).
+    void save(detail::byte_writer& bytes) const {
+        detail::fluid_writer out(bytes, kind, settings());
+        out.put(next_id_);
+        out.put(std::uint64_t{drops_.size()});
+        for (drop const& d : drops_) {
+            out.put(d.id);
+            out.put(d.position);
+            out.put(d.velocity);
+            out.put(d.age);
+        }
+        out.finish();
+    }
+    /// Goes on where `save` was called; the next steps are equal to the bit. O(particles).
+    /// \throws invalid_input  `checkpoint_mismatch` for other options, another emitter or sink; io_error  `wrong_format`
+    /// for another fluid, `truncated`, `bad_syntax`. The rain is as before then.
+    void load(detail::byte_reader& bytes) {
+        detail::fluid_reader in(bytes, kind);
+        std::uint64_t const next = in.get();
+        std::vector<drop> drops(in.count(64));
+        for (drop& d : drops) {
+            d.id = in.get();
+            in.get(d.position);
+            in.get(d.velocity);
+            in.get(d.age);
+        }
+        in.finish(settings());
+        if (drops.size() != options_.particles) in.bad("the number of drops is not that of the options");
+        std::vector<std::uint64_t> ids;
+        for (drop const& d : drops) ids.push_back(d.id);
+        std::sort(ids.begin(), ids.end());
+        if (std::adjacent_find(ids.begin(), ids.end()) != ids.end() || ids.back() >= next) in.bad("ids repeat");
+        drops_ = std::move(drops);
+        next_id_ = next;
+    }
+
 private:
+    static constexpr std::uint64_t kind = 0x7461662D7261696EULL;  // "taf-rain"
+
     struct drop {
         vec3 position{0, 0, 0};
         vec3 velocity{0, 0, 0};
         double age = 0;
         std::uint64_t id = 0;
     };
+
+    [[nodiscard]] detail::fluid_settings settings() const {
+        detail::fluid_settings out;
+        options_.describe(out);
+        out.add(sink_);
+        out.add(emitter_);
+        return out;
+    }
 
     [[nodiscard]] drop fresh(std::uint64_t id) const {
         stream random(options_.seed, 0x7261696E, id);

@@ -6,8 +6,10 @@
 #include <tafoni/core/executor.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/fluid/detail/fluid_bytes.hpp>
+#include <tafoni/fluid/detail/free_places.hpp>
 #include <tafoni/fluid/detail/particle_grid.hpp>
-#include <tafoni/fluid/detail/sph_sums_avx2.hpp>
+#include <tafoni/fluid/detail/sorted_fluid.hpp>
 #include <tafoni/fluid/emitter.hpp>
 #include <tafoni/fluid/sph_options.hpp>
 
@@ -49,7 +51,7 @@ public:
         : options_((options.validate(), options)), sink_((sink.validate(), sink)), emitters_(std::move(emitters)) {
         for (box_emitter const& e : emitters_) {
             e.validate();
-            (void)lattice(e);
+            places_.emplace_back(e, options_.spacing);
         }
         h_ = options_.smoothing * options_.spacing;
         sound_ = options_.sound_speed > 0 ? options_.sound_speed : 10 * fastest();
@@ -113,9 +115,10 @@ public:
         emit();
         std::size_t const n = ids_.size();
         if (n == 0) return options_.largest_step;
-        grid_.build(x_[0], x_[1], x_[2], threads);
-        sort(threads);
-        sum(threads);
+        double const ratio = 1 / options_.smoothing;
+        double const pace = sound_ / h_;
+        neighbours_.accelerate(x_, v_, {.mass = ratio * ratio * ratio / pi, .stiffness = pace * pace, .viscosity = 20 * viscosity_ / (h_ * h_)},
+                               a_, density_, threads);
         std::vector<extremes> blocks((n + detail::particle_grain - 1) / detail::particle_grain);
         threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
             blocks[from / detail::particle_grain] = add_forces(walls, from, to);
@@ -139,16 +142,63 @@ public:
         return dt;
     }
 
+    /// All that decides the steps to come, and what the fluid was told. O(particles).
+    void save(detail::byte_writer& bytes) const {
+        detail::fluid_writer out(bytes, kind, settings());
+        out.put(origin_);
+        out.put(next_id_);
+        out.put(std::uint64_t{ids_.size()});
+        for (std::size_t i = 0; i < ids_.size(); ++i) {
+            out.put(ids_[i]);
+            for (triple const* t : {&x_, &v_}) {
+                for (auto const& a : *t) out.put(a[i]);
+            }
+            out.put(density_[i]);
+        }
+        out.finish();
+    }
+    /// Goes on where `save` was called; the next steps are equal to the bit. O(particles).
+    /// \throws invalid_input  `checkpoint_mismatch` for other options, emitters or sink; io_error  `wrong_format` for
+    /// another fluid or scalar, `truncated`, `bad_syntax`. The fluid is as before then.
+    void load(detail::byte_reader& bytes) {
+        detail::fluid_reader in(bytes, kind);
+        sph next(*this);
+        in.get(next.origin_);
+        next.next_id_ = in.get();
+        std::size_t const n = in.count(8 + 7 * sizeof(Scalar));
+        next.ids_.resize(n);
+        next.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            next.ids_[i] = in.get();
+            if ((i > 0 && next.ids_[i] <= next.ids_[i - 1]) || next.ids_[i] >= next.next_id_) in.bad("ids do not ascend");
+            for (triple* t : {&next.x_, &next.v_}) {
+                for (auto& a : *t) in.get(a[i]);
+            }
+            in.get(next.density_[i]);
+        }
+        in.finish(settings());
+        if (n > options_.particles) in.bad("there are more particles than the options allow");
+        *this = std::move(next);
+    }
+
 private:
+    static constexpr std::uint64_t kind = 0x7461662D73706800ULL + sizeof(Scalar);  // "taf-sph"
     static constexpr double pi = 3.14159265358979323846;
-    static constexpr std::size_t pad = detail::sph_lane_count<Scalar>;
-    using triple = std::array<std::vector<Scalar>, 3>;
+    using triple = detail::fluid_axes<Scalar>;
 
     struct extremes {
         double velocity = 0;      ///< largest square, h^2 / s^2
         double acceleration = 0;  ///< largest square, h^2 / s^4
         bool finite = true;
     };
+
+    [[nodiscard]] detail::fluid_settings settings() const {
+        detail::fluid_settings out;
+        options_.describe(out);
+        out.add(sink_);
+        for (box_emitter const& e : emitters_) out.add(e);
+        return out;
+    }
 
     /// Of the fall through a pool, or out of an emitter.
     [[nodiscard]] double fastest() const noexcept {
@@ -174,126 +224,18 @@ private:
         density_.push_back(Scalar(0));
     }
 
-    /// Places of an emitter along each axis, a spacing apart, in the middle of its box.
-    [[nodiscard]] std::array<std::uint32_t, 3> lattice(box_emitter const& e) const {
-        std::array<std::uint32_t, 3> n{};
-        double total = 1;
-        for (int d = 0; d < 3; ++d) {
-            double const along = std::floor((e.box.hi[d] - e.box.lo[d]) / options_.spacing + 1e-6) + 1;
-            total *= along;
-            if (!(total <= 16777216)) {
-                detail::fail<invalid_input>(errc::size_overflow, "sph: an emitter has more than 2^24 places; its box is too large for the spacing",
-                                            {.kind = entity::parameter, .value = total, .limit = 16777216});
-            }
-            n[static_cast<std::size_t>(d)] = static_cast<std::uint32_t>(along);
-        }
-        return n;
-    }
-
     void emit() {
-        double const s = options_.spacing;
-        for (box_emitter const& e : emitters_) {
+        for (std::size_t k = 0; k < emitters_.size(); ++k) {
             if (ids_.size() >= options_.particles) return;
-            auto const n = lattice(e);
-            vec3 first{0, 0, 0};
-            for (int d = 0; d < 3; ++d) {
-                first[d] = e.box.lo[d] + 0.5 * ((e.box.hi[d] - e.box.lo[d]) - s * (n[static_cast<std::size_t>(d)] - 1));
-            }
-            taken_.assign(static_cast<std::size_t>(n[0]) * n[1] * n[2], 0);
-            for (std::size_t i = 0; i < ids_.size(); ++i) occupy(position(i), first, n);
-            std::size_t place = 0;
-            for (std::uint32_t c = 0; c < n[2]; ++c) {
-                for (std::uint32_t b = 0; b < n[1]; ++b) {
-                    for (std::uint32_t a = 0; a < n[0]; ++a, ++place) {
-                        if (taken_[place] != 0) continue;
-                        if (ids_.size() >= options_.particles) return;
-                        append(next_id_++, vec3{first[0] + s * a, first[1] + s * b, first[2] + s * c}, e.velocity);
-                    }
-                }
-            }
+            detail::free_places& places = places_[k];
+            places.clear();
+            for (std::size_t i = 0; i < ids_.size(); ++i) places.occupy(position(i));
+            places.for_each([&](vec3 const& p) {
+                if (ids_.size() >= options_.particles) return false;
+                append(next_id_++, p, emitters_[k].velocity);
+                return true;
+            });
         }
-    }
-    /// Marks the places closer than a spacing, less a hundredth for those that have just moved on.
-    void occupy(vec3 const& p, vec3 const& first, std::array<std::uint32_t, 3> const& n) {
-        double const s = options_.spacing;
-        std::array<std::int64_t, 3> low{};
-        std::array<std::int64_t, 3> high{};
-        for (int d = 0; d < 3; ++d) {
-            auto const e = static_cast<std::size_t>(d);
-            double const at = (p[d] - first[d]) / s;
-            if (!(at > -1 && at < n[e])) return;
-            low[e] = std::max<std::int64_t>(static_cast<std::int64_t>(std::floor(at)), 0);
-            high[e] = std::min<std::int64_t>(static_cast<std::int64_t>(std::floor(at)) + 1, n[e] - 1);
-        }
-        for (std::int64_t c = low[2]; c <= high[2]; ++c) {
-            for (std::int64_t b = low[1]; b <= high[1]; ++b) {
-                for (std::int64_t a = low[0]; a <= high[0]; ++a) {
-                    vec3 const q{first[0] + s * static_cast<double>(a), first[1] + s * static_cast<double>(b), first[2] + s * static_cast<double>(c)};
-                    if (squared_length(p - q) < 0.98 * s * s) {
-                        taken_[static_cast<std::size_t>(a + n[0] * (b + n[1] * c))] = 1;
-                    }
-                }
-            }
-        }
-    }
-
-    template <executor E>
-    void sort(E const& threads) {
-        std::size_t const n = ids_.size();
-        for (auto* t : {&sx_, &sv_, &sa_}) {
-            for (auto& a : *t) a.resize(n + pad);
-        }
-        s_density_.resize(n + pad);
-        s_pressure_.resize(n + pad);
-        for (auto* t : {&sx_, &sv_}) {
-            for (auto& a : *t) std::fill(a.end() - pad, a.end(), Scalar(0));
-        }
-        std::fill(s_density_.end() - pad, s_density_.end(), Scalar(0));
-        std::fill(s_pressure_.end() - pad, s_pressure_.end(), Scalar(0));
-        for (auto& a : a_) a.resize(n);
-        spans_.resize(n);
-        auto const order = grid_.order();
-        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
-            for (std::size_t k = from; k < to; ++k) {
-                std::size_t const i = order[k];
-                for (std::size_t d = 0; d < 3; ++d) {
-                    sx_[d][k] = x_[d][i];
-                    sv_[d][k] = v_[d][i];
-                }
-                grid_.around(sx_[0][k], sx_[1][k], sx_[2][k], spans_[k]);
-            }
-        });
-    }
-
-    template <executor E>
-    void sum(E const& threads) {
-        std::size_t const n = ids_.size();
-        bool const avx2 = detail::sph_has_avx2();
-        detail::sph_arrays<Scalar> const all{
-            .x = sx_[0].data(), .y = sx_[1].data(), .z = sx_[2].data(), .u = sv_[0].data(), .v = sv_[1].data(), .w = sv_[2].data(),
-            .density = s_density_.data(), .pressure = s_pressure_.data(), .spans = spans_.data(),
-            .ax = sa_[0].data(), .ay = sa_[1].data(), .az = sa_[2].data()};
-        double const ratio = 1 / options_.smoothing;
-        double const mass = ratio * ratio * ratio / pi;  // of a particle times the kernel's factor, over rho_0
-        double const c = sound_ / h_;
-        auto const order = grid_.order();
-        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
-            detail::sph_densities(all, from, to, static_cast<Scalar>(mass), avx2);
-            auto const stiff = static_cast<Scalar>(c * c);
-            for (std::size_t k = from; k < to; ++k) {
-                Scalar const rho = s_density_[k];
-                s_pressure_[k] = rho > 1 ? stiff * (rho - 1) / (rho * rho) : Scalar(0);
-            }
-        });
-        auto const viscous = static_cast<Scalar>(20 * viscosity_ / (h_ * h_));
-        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
-            detail::sph_forces(all, from, to, static_cast<Scalar>(mass), viscous, avx2);
-            for (std::size_t k = from; k < to; ++k) {
-                std::size_t const i = order[k];
-                density_[i] = s_density_[k];
-                for (std::size_t d = 0; d < 3; ++d) a_[d][i] = sa_[d][k];
-            }
-        });
     }
 
     /// Gravity and walls.
@@ -301,7 +243,7 @@ private:
     [[nodiscard]] extremes add_forces(B const& walls, std::size_t from, std::size_t to) {
         extremes out;
         for (std::size_t k = from; k < to; ++k) {
-            std::size_t const i = grid_.order()[k];
+            std::size_t const i = neighbours_.order()[k];
             vec3 const p = position(i);
             vec3 const v = velocity(i);
             vec3 a = options_.gravity;
@@ -379,14 +321,8 @@ private:
     triple v_{};                        ///< h / s
     triple a_{};                        ///< h / s^2
     std::vector<Scalar> density_{};
-    std::vector<unsigned char> taken_{};
-    detail::particle_grid<Scalar> grid_{};
-    triple sx_{};                       ///< sorted by cell
-    triple sv_{};
-    triple sa_{};
-    std::vector<Scalar> s_density_{};
-    std::vector<Scalar> s_pressure_{};
-    std::vector<detail::sph_spans> spans_{};
+    std::vector<detail::free_places> places_{};  ///< of each emitter
+    detail::sorted_fluid<Scalar> neighbours_{};
 };
 
 static_assert(particle_fluid<sph<float>> && particle_fluid<sph<double>>);

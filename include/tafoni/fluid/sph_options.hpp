@@ -29,6 +29,15 @@ struct sph_options {
     double courant = 0.4;             ///< share of the largest stable step, in (0, 0.5]
     double largest_step = 0.05;       ///< s, > 0
 
+    /// Calls `out.add` with each number in turn: what a saved fluid is compared by.
+    void describe(auto& out) const {
+        out.add(std::uint64_t{particles});
+        for (double const v : {spacing, smoothing, sound_speed, viscosity, damping, reach, wall_stiffness, wall_damping}) out.add(v);
+        out.add(gravity);
+        out.add(centre);
+        for (double const v : {toward, courant, largest_step}) out.add(v);
+    }
+
     /// \throws invalid_input  `bad_parameter`.
     void validate() const {
         constexpr double least = 1e-100;
