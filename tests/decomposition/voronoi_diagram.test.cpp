@@ -1,3 +1,5 @@
+#include "support/code_of.hpp"
+
 #include <tafoni/core/random.hpp>
 #include <tafoni/core/sum.hpp>
 #include <tafoni/decomposition/voronoi_diagram.hpp>
@@ -19,6 +21,7 @@
 namespace {
 
 using namespace tafoni;
+using tafoni_test::code_of;
 using points = std::vector<vec3>;
 
 box3 box(vec3 const& lo, vec3 const& hi) {
@@ -199,16 +202,6 @@ bool same_geometry(voronoi_diagram const& a, voronoi_diagram const& b) {
     return a.sites == b.sites && a.face_begin == b.face_begin && a.neighbour == b.neighbour &&
            a.corner_begin == b.corner_begin && a.corners == b.corners && a.keys == b.keys &&
            same_bytes(a.vertices, b.vertices);
-}
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
 }
 
 // Blocks on threads of their own, strided.

@@ -1,3 +1,5 @@
+#include "support/code_of.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <tafoni/core/random.hpp>
@@ -8,6 +10,7 @@
 #include <set>
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 static_assert(cell_complex<voxel_cells>);
 static_assert(link_network<voxel_cells>);
@@ -23,16 +26,6 @@ voxel_cells random_voxels(std::uint64_t seed) {
     for (bool& side : o.artificial) side = random.chance(0.3);
     double const share = random.uniform01();
     return voxel_cells::from_predicate(o, [&](vec3 const&) { return random.chance(share); });
-}
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
 }
 
 }  // namespace

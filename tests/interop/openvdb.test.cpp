@@ -1,3 +1,5 @@
+#include "support/code_of.hpp"
+
 #include <tafoni/interop/openvdb.hpp>
 
 #include <catch2/catch.hpp>
@@ -14,18 +16,9 @@
 #include <sstream>
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 namespace {
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
-}
 
 dense_grid any_grid(std::uint64_t seed) {
     stream random(seed, stage::user, 0);

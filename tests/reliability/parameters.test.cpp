@@ -1,4 +1,5 @@
 #include "percolation/box_network.hpp"
+#include "support/code_of.hpp"
 #include "support/shapes.hpp"
 
 #include <tafoni/tafoni.hpp>
@@ -183,16 +184,6 @@ void check(std::vector<parameter> const& all) {
             CHECK_NOTHROW(p.attempt(v));
         }
     }
-}
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
 }
 
 }  // namespace

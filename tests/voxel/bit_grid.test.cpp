@@ -1,3 +1,5 @@
+#include "support/code_of.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <tafoni/core/random.hpp>
@@ -5,20 +7,7 @@
 #include <tafoni/voxel/dense_grid.hpp>
 
 using namespace tafoni;
-
-namespace {
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
-}
-
-}  // namespace
+using tafoni_test::code_of;
 
 TEST_CASE("a bit grid answers what a dense grid does, whatever is set in whatever order") {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {

@@ -1,3 +1,5 @@
+#include "support/code_of.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <tafoni/decomposition/voxel_cells.hpp>
@@ -14,6 +16,7 @@
 #include <string>
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 namespace {
 
@@ -29,16 +32,6 @@ struct faulty {
 
 /// Without bytes, and with one voxel of no state.
 struct strange {};
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
-}
 
 }  // namespace
 

@@ -1,21 +1,14 @@
+#include "support/code_of.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <tafoni/core/random.hpp>
 #include <tafoni/voxel/grid_frame.hpp>
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 namespace {
-
-template <class F>
-errc code_of(F const& f) {
-    try {
-        f();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
-}
 
 vec3 const axes[6] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {-1, 0, 0}, {0, -1, 0}};  // as up_axis
 

@@ -4,6 +4,7 @@
 #include <tafoni/voxel/isosurface.hpp>
 
 #include <catch2/catch.hpp>
+#include <support/code_of.hpp>
 #include <support/surface_laws.hpp>
 
 #include <array>
@@ -18,6 +19,7 @@
 namespace {
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 indexed_mesh extract(std::vector<double> const& samples, std::array<std::size_t, 3> size, double iso,
                      isosurface_border border = isosurface_border::closed) {
@@ -40,15 +42,6 @@ double area(indexed_mesh const& m) {
         sum += 0.5 * length(cross(m.positions[f[1]] - m.positions[f[0]], m.positions[f[2]] - m.positions[f[0]]));
     }
     return sum;
-}
-
-errc code_of(auto const& call) {
-    try {
-        call();
-    } catch (invalid_input const& e) {
-        return e.code();
-    }
-    return errc{};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <tafoni/weathering/voxel_run.hpp>
 
 #include <catch2/catch.hpp>
+#include <support/code_of.hpp>
 
 #include <array>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <vector>
 
 using namespace tafoni;
+using tafoni_test::code_of;
 
 namespace {
 
@@ -38,15 +40,6 @@ auto process() {
 constexpr int every = 3;
 
 voxel_options options() { return {.colluvium = repose_rule{}, .rockfall = rockfall_options{}, .seed = 6}; }
-
-errc code_of(auto&& act) {
-    try {
-        act();
-    } catch (io_error const& e) {
-        return e.code();
-    }
-    return errc{};
-}
 
 }  // namespace
 
@@ -124,7 +117,7 @@ TEST_CASE("with joints and friction, a run that goes on from a checkpoint lets f
         o.rockfall->joints.discs.pop_back();
         return o;
     }());
-    REQUIRE(code_of([&] { looser.resume(states[3]); }) == errc::checkpoint_mismatch);
+    REQUIRE(code_of<io_error>([&] { looser.resume(states[3]); }) == errc::checkpoint_mismatch);
 }
 
 TEST_CASE("a checkpoint of another grid, other parameters or damaged bytes is refused, and nothing changes") {
@@ -133,7 +126,7 @@ TEST_CASE("a checkpoint of another grid, other parameters or damaged bytes is re
     auto const saved = run.checkpoint();
     auto const refused = [&](auto& other) {
         auto const before = other.checkpoint();
-        errc const e = code_of([&] { other.resume(saved); });
+        errc const e = code_of<io_error>([&] { other.resume(saved); });
         REQUIRE(other.checkpoint() == before);
         return e;
     };
@@ -199,15 +192,15 @@ TEST_CASE("a checkpoint of another grid, other parameters or damaged bytes is re
     voxel_run fresh(ruin(), process(), options());
     auto const before = fresh.checkpoint();
     std::vector<std::byte> const nothing;
-    REQUIRE(code_of([&] { fresh.resume(nothing); }) == errc::wrong_format);
+    REQUIRE(code_of<io_error>([&] { fresh.resume(nothing); }) == errc::wrong_format);
     for (std::size_t n = 8; n < saved.size(); n += saved.size() / 40 + 1) {
         std::vector<std::byte> const part(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(n));
-        REQUIRE(code_of([&] { fresh.resume(part); }) != errc{});
+        REQUIRE(code_of<io_error>([&] { fresh.resume(part); }) != errc{});
     }
     for (std::size_t n = 0; n < saved.size(); n += saved.size() / 40 + 1) {
         std::vector<std::byte> wrong = saved;
         wrong[n] ^= std::byte{16};
-        REQUIRE(code_of([&] { fresh.resume(wrong); }) != errc{});
+        REQUIRE(code_of<io_error>([&] { fresh.resume(wrong); }) != errc{});
     }
     REQUIRE(fresh.checkpoint() == before);
     fresh.resume(saved);
