@@ -98,6 +98,7 @@ public:
 private:
     struct contact {
         std::uint32_t face = 0;
+        std::uint32_t load = 0;  ///< whose, among those of the block
         std::int64_t taken = 0;  ///< from the face; negative: laid down
     };
     struct block {
@@ -119,7 +120,7 @@ private:
     void iterate(Executor const& threads) {
         if (!fresh_) {
             rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
-            mean_edge_ = surface_.mean_edge_length();
+            if (!(mean_edge_ > 0)) mean_edge_ = surface_.mean_edge_length();  // what grows or is split later changes no limit
             fresh_ = true;
         }
         if (surface_.triangles.empty()) {
@@ -143,11 +144,9 @@ private:
         touch(dt, threads);
         if constexpr (!exchange_rule<Process>) displace(most, threads);
         ahead_ = 0;
-        book_contacts();
+        book_contacts(most);
         if constexpr (exchange_rule<Process>) {
-            std::vector<std::int64_t> const before = books_.due;
-            detail::settle_accounts(surface_.positions, surface_.triangles, rings_, unit_, most, books_, wear_);
-            for (std::size_t v = 0; v < before.size(); ++v) sediment_[v] += before[v] - books_.due[v];
+            settle_(surface_.positions, surface_.triangles, rings_, unit_, most, books_, wear_, sediment_);
         } else {
             book_difference();
             for (std::size_t v = 0; v < next_.size(); ++v) wear_[v] += length(next_[v] - surface_.positions[v]);
@@ -184,6 +183,7 @@ private:
                             auto const at = books_.load.find(id_of(i));
                             load = at == books_.load.end() ? 0 : at->second;
                             known = true;
+                            out.loads.push_back({id_of(i), load});
                         }
                         wash_point const w{.position = p, .velocity = fluid_.velocity(i), .normal = c.normal,
                                            .distance = c.distance, .reach = reach};
@@ -197,30 +197,37 @@ private:
                         if (taken < -load) taken = -load;
                         load += taken;
                     }
-                    out.contacts.push_back({c.face, taken});
+                    out.contacts.push_back({c.face, static_cast<std::uint32_t>(out.loads.size() - (known ? 1U : 0U)), taken});
                 });
                 if (touches) out.points.push_back(p);
-                if (known) out.loads.push_back({id_of(i), load});
             }
         });
         points_.clear();
         for (block const& b : blocks_) points_.insert(points_.end(), b.points.begin(), b.points.end());
     }
 
-    void book_contacts() {
+    void book_contacts(double most) {
         wet_.assign(surface_.positions.size(), 0);
-        for (block const& b : blocks_) {
+        if constexpr (exchange_rule<Process>) {
+            exchange_.open(surface_.positions.size());
+            for (block const& b : blocks_) {
+                for (contact const& c : b.contacts) exchange_.ask(surface_.triangles[c.face], c.taken);
+            }
+            exchange_.close(surface_.positions, surface_.triangles, rings_, unit_, most, books_);
+        }
+        for (block& b : blocks_) {
             report_.contacts += b.contacts.size();
             for (contact const& c : b.contacts) {
                 auto const& t = surface_.triangles[c.face];
+                // What was not granted before cannot be laid down now.
+                std::int64_t const taken = c.taken < 0 ? std::max(c.taken, -b.loads[c.load].second) : c.taken;
                 for (std::size_t k = 0; k < 3; ++k) {
                     ++flow_[t[k]];
                     wet_[t[k]] = 1;
-                    // Thirds that add up: what is left of the division goes to the first corners.
-                    std::int64_t const third = c.taken / 3;
-                    std::int64_t const rest = c.taken - 3 * third;
-                    auto const more = static_cast<std::int64_t>(k) < (rest < 0 ? -rest : rest);
-                    books_.due[t[k]] -= third + (more ? (rest < 0 ? -1 : 1) : 0);
+                    if (taken == 0) continue;
+                    std::int64_t const part = exchange_.grant(t[k], exchange_.third(taken, k));
+                    books_.due[t[k]] -= part;
+                    b.loads[c.load].second += part;
                 }
             }
             for (auto const& [id, load] : b.loads) {
@@ -342,6 +349,8 @@ private:
     detail::near_water water_{};
     detail::volume_unit unit_{};
     detail::sediment_books books_{};
+    detail::sediment_exchange exchange_{};
+    detail::sediment_settlement settle_{};
     double ahead_ = 0;                    ///< s that the fluid is ahead of the surface by, after an exception
     std::vector<block> blocks_{};
     detail::visit_order order_{};

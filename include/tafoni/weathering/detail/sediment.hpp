@@ -9,9 +9,11 @@
 #include <tafoni/weathering/hydraulic_erosion.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -71,42 +73,208 @@ struct sediment_books {
     }
 };
 
-/// Moves vertices along their normals by the volume that they owe or are owed, one after the other by number, no
-/// farther than `most`; books what the surface really changed by, and keeps the rest due [thesis, 8.3, signed].
-/// Adds the way to `wear`. Returns the vertices that moved. O(vertices + faces at those that move).
-inline std::size_t settle_accounts(std::vector<vec3>& positions, std::span<std::array<std::uint32_t, 3> const> triangles,
-                                   vertex_rings const& rings, volume_unit const& unit, double most, sediment_books& books,
-                                   std::vector<double>& wear) {
-    std::size_t moved = 0;
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-        if (books.due[v] == 0) continue;
-        // Six times the volume per length along a is a . (sum of the cross products of the sides at v).
-        vec3 const p = positions[v];
-        vec3 sum{0, 0, 0};
+/// The triangles around a vertex, as far as its move is concerned.
+struct vertex_room {
+    vec3 sum{0, 0, 0};   ///< of the cross products of the sides at the vertex: six times the volume per length along a is a . sum
+    double area = 0;     ///< |sum|
+    double whole = 0;    ///< of the lengths of the products; area / whole is the mean cosine between faces and normal
+    double lowest = 0;   ///< least altitude of a triangle over the side opposite the vertex, length unit
+
+    static vertex_room at(std::size_t v, std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles,
+                          vertex_rings const& rings) {
+        vertex_room room;
+        vec3 const& p = positions[v];
+        double lowest = -1;
         for (auto const& c : rings.faces(v)) {
             auto const& t = triangles[c.face];
-            vec3 const a{positions[t[(c.place + 1) % 3]] - p};
-            vec3 const b{positions[t[(c.place + 2) % 3]] - p};
-            sum += cross(a, b);
+            vec3 const& q = positions[t[(c.place + 1) % 3]];
+            vec3 const& r = positions[t[(c.place + 2) % 3]];
+            vec3 const n = cross(vec3{q - p}, vec3{r - p});
+            room.sum += n;
+            double const nn = squared_length(n);
+            room.whole += std::sqrt(nn);
+            double const side = squared_length(r - q);
+            double const height = side > 0 ? nn / side : 0.0;
+            if (lowest < 0 || height < lowest) lowest = height;
         }
-        double const area = length(sum);
-        if (!(area > 0)) continue;
-        double const per_length = area / 6;
-        double const wanted = unit.volume(books.due[v]) / per_length;
-        double const d = std::clamp(wanted, -most, most);
-        vec3 const to{p[0] + d / area * sum[0], p[1] + d / area * sum[1], p[2] + d / area * sum[2]};
-        vec3 const way{to - p};
-        std::int64_t booked = unit.fixed(dot(way, sum) / 6);
-        if (d == wanted) booked = books.due[v];  // the rest is rounding
-        if (booked == 0) continue;
-        positions[v] = to;
-        wear[v] += length(way);
-        books.due[v] -= booked;
-        (booked < 0 ? books.eroded : books.deposited) += booked < 0 ? -booked : booked;
-        ++moved;
+        room.area = length(room.sum);
+        room.lowest = lowest > 0 ? std::sqrt(lowest) : 0.0;
+        return room;
     }
-    return moved;
-}
+    /// How far the vertex may go in one iteration: no triangle at it turns by more than about 14 degrees.
+    [[nodiscard]] double way(double most) const noexcept {
+        return area > 0.2 * whole ? std::min(most, 0.25 * lowest) : 0.0;
+    }
+    /// The volume that goes with it, at most.
+    [[nodiscard]] double volume(double most) const noexcept { return way(most) * area / 6; }
+};
+
+/// Who asks for what in an iteration, and what the surface can give.
+///
+/// Particles `ask` first; `close` compares what a vertex is asked for with what it may move by in an iteration, less
+/// what it owes already; each request is then granted in that share. So water in a place that cannot follow takes no
+/// more than that place gives, and no debt grows. All in whole units and in one order.
+class sediment_exchange {
+public:
+    void open(std::size_t vertices) {
+        out_.assign(vertices, 0);
+        in_.assign(vertices, 0);
+        out_share_.assign(vertices, 1.0F);
+        in_share_.assign(vertices, 1.0F);
+    }
+    /// A corner's part of what is taken from a face: thirds that add up, the rest going to the first corners.
+    [[nodiscard]] static std::int64_t third(std::int64_t taken, std::size_t corner) noexcept {
+        std::int64_t const each = taken / 3;
+        std::int64_t const rest = taken - 3 * each;
+        if (static_cast<std::int64_t>(corner) >= (rest < 0 ? -rest : rest)) return each;
+        return each + (rest < 0 ? -1 : 1);
+    }
+    void ask(std::array<std::uint32_t, 3> const& corners, std::int64_t taken) noexcept {
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::int64_t const part = third(taken, k);
+            (part > 0 ? out_ : in_)[corners[k]] += part > 0 ? part : -part;
+        }
+    }
+    /// O(faces at the vertices that were asked).
+    void close(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings,
+               volume_unit const& unit, double most, sediment_books const& books) {
+        for (std::size_t v = 0; v < out_.size(); ++v) {
+            if (out_[v] == 0 && in_[v] == 0) continue;
+            std::int64_t const cap = unit.fixed(vertex_room::at(v, positions, triangles, rings).volume(most));
+            out_share_[v] = share(cap + std::min<std::int64_t>(books.due[v], 0), out_[v]);
+            in_share_[v] = share(cap - std::max<std::int64_t>(books.due[v], 0), in_[v]);
+        }
+    }
+    /// What of a corner's part is granted: of its sign, and no more.
+    [[nodiscard]] std::int64_t grant(std::uint32_t vertex, std::int64_t part) const noexcept {
+        float const share = (part > 0 ? out_share_ : in_share_)[vertex];
+        if (share >= 1) return part;
+        double const size = std::floor(static_cast<double>(part > 0 ? part : -part) * static_cast<double>(share));
+        return part > 0 ? static_cast<std::int64_t>(size) : -static_cast<std::int64_t>(size);
+    }
+
+private:
+    [[nodiscard]] static float share(std::int64_t room, std::int64_t asked) noexcept {
+        if (asked <= room) return 1;
+        return room > 0 ? static_cast<float>(static_cast<double>(room) / static_cast<double>(asked)) : 0.0F;
+    }
+
+    std::vector<std::int64_t> out_{};  ///< asked of the vertex
+    std::vector<std::int64_t> in_{};   ///< offered to it
+    std::vector<float> out_share_{};
+    std::vector<float> in_share_{};
+};
+
+/// Moves vertices by the volume that they owe or are owed [thesis, 8.3, signed].
+class sediment_settlement {
+public:
+    /// One vertex after the other, by number, along the sum of the normals of its faces weighted by area, in which
+    /// direction the volume changes fastest; no farther than `most` and a quarter of the lowest triangle at it. A
+    /// move that turns a face more than 70 degrees away from the normal at one of its corners is halved, twice at most, then left.
+    /// Books what the surface really changed by; of what stays due half goes to the neighbours, by the area around
+    /// them. Adds the way to `wear` and the volume to `sediment`. Returns the vertices that moved.
+    /// O(vertices + faces at those that owe).
+    std::size_t operator()(std::vector<vec3>& positions, std::span<std::array<std::uint32_t, 3> const> triangles,
+                           vertex_rings const& rings, volume_unit const& unit, double most, sediment_books& books,
+                           std::span<double> wear, std::span<std::int64_t> sediment) {
+        normal_.resize(positions.size());
+        known_.assign(positions.size(), 0);
+        left_.clear();
+        std::size_t moved = 0;
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            if (books.due[v] == 0) continue;
+            vertex_room const room = vertex_room::at(v, positions, triangles, rings);
+            double const way = room.way(most);
+            if (way > 0) {
+                double const wanted = unit.volume(books.due[v]) / (room.area / 6);
+                double d = std::clamp(wanted, -way, way);
+                for (int halved = 0; halved < 3; ++halved, d *= 0.5) {
+                    vec3 const& p = positions[v];
+                    double const s = d / room.area;
+                    vec3 const to{p[0] + s * room.sum[0], p[1] + s * room.sum[1], p[2] + s * room.sum[2]};
+                    vec3 const step{to - p};
+                    std::int64_t booked = unit.fixed(dot(step, room.sum) / 6);
+                    if (d == wanted) booked = books.due[v];  // the rest is rounding
+                    if (booked == 0) break;
+                    if (folds(v, to, positions, triangles, rings)) continue;
+                    positions[v] = to;
+                    wear[v] += length(step);
+                    sediment[v] += booked;
+                    books.due[v] -= booked;
+                    (booked < 0 ? books.eroded : books.deposited) += booked < 0 ? -booked : booked;
+                    ++moved;
+                    break;
+                }
+            }
+            if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
+        }
+        pass_on(positions, triangles, rings, books);
+        return moved;
+    }
+
+private:
+    static constexpr double steepest = 0.5;  ///< cosine of 60 degrees
+
+    vec3 const& normal(std::size_t v, std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles,
+                       vertex_rings const& rings) {
+        if (known_[v] == 0) {
+            vec3 sum{0, 0, 0};
+            for (auto const& c : rings.faces(v)) {
+                auto const& t = triangles[c.face];
+                sum += cross(vec3{positions[t[1]] - positions[t[0]]}, vec3{positions[t[2]] - positions[t[0]]});
+            }
+            normal_[v] = normalized(sum);
+            known_[v] = 1;
+        }
+        return normal_[v];
+    }
+
+    bool folds(std::size_t v, vec3 const& to, std::span<vec3 const> positions,
+               std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings) {
+        for (auto const& c : rings.faces(v)) {
+            auto const& t = triangles[c.face];
+            vec3 const& q = positions[t[(c.place + 1) % 3]];
+            vec3 const& r = positions[t[(c.place + 2) % 3]];
+            vec3 const now = normalized(cross(vec3{q - positions[v]}, vec3{r - positions[v]}));
+            vec3 const then = normalized(cross(vec3{q - to}, vec3{r - to}));
+            for (std::uint32_t const w : t) {
+                vec3 const& n = normal(w, positions, triangles, rings);
+                double const after = dot(then, n);
+                if (after < steepest && after < dot(now, n) - 1e-9) return true;
+            }
+        }
+        return false;
+    }
+
+    void pass_on(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings,
+                 sediment_books& books) {
+        passed_.clear();
+        for (std::uint32_t const v : left_) {
+            auto const around = rings.neighbors(v);
+            weight_.clear();
+            double whole = 0;
+            for (std::uint32_t const w : around) {
+                weight_.push_back(vertex_room::at(w, positions, triangles, rings).whole);
+                whole += weight_.back();
+            }
+            if (!(whole > 0)) continue;
+            double const half = 0.5 * static_cast<double>(books.due[v]);
+            for (std::size_t k = 0; k < around.size(); ++k) {
+                auto const part = static_cast<std::int64_t>(half * (weight_[k] / whole));
+                if (part == 0) continue;
+                passed_.emplace_back(around[k], part);
+                passed_.emplace_back(v, -part);
+            }
+        }
+        for (auto const& [w, part] : passed_) books.due[w] += part;
+    }
+
+    std::vector<vec3> normal_{};
+    std::vector<unsigned char> known_{};
+    std::vector<std::uint32_t> left_{};
+    std::vector<double> weight_{};
+    std::vector<std::pair<std::uint32_t, std::int64_t>> passed_{};
+};
 
 }  // namespace tafoni::detail
 
