@@ -21,11 +21,11 @@ triangle_surface slope(std::uint32_t n, double drop) {
 }
 rain_particles rain_over(double drop, double gravity = 9.81, std::uint32_t particles = 400) {
     box3 from;
-    from.lo = vec3{1.5, 1.5, 0.5};
-    from.hi = vec3{8, 8.5, 2};
+    from.lo = vec3{2.5, 2.5, 0.5};
+    from.hi = vec3{7, 7.5, 2};
     box3 keep;
-    keep.lo = vec3{1, 1, -drop - 1};  // the rim stays dry
-    keep.hi = vec3{9, 9, 5};
+    keep.lo = vec3{2.2, 2.2, -drop - 1};  // the rim stays dry
+    keep.hi = vec3{7.8, 7.8, 5};
     return rain_particles({.box = from}, {.keep = keep},
                           {.particles = particles, .radius = 0.3, .gravity = vec3{0, 0, -gravity}, .seed = 3});
 }

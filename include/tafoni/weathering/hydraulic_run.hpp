@@ -120,6 +120,7 @@ private:
     void iterate(Executor const& threads) {
         if (!fresh_) {
             rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+            if constexpr (exchange_rule<Process>) settle_.adopt(surface_.positions, surface_.triangles, rings_);
             if (!(mean_edge_ > 0)) mean_edge_ = surface_.mean_edge_length();  // what grows or is split later changes no limit
             fresh_ = true;
         }

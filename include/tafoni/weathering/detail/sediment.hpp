@@ -4,6 +4,7 @@
 #define TAFONI_WEATHERING_DETAIL_SEDIMENT_HPP
 
 #include <tafoni/core/error.hpp>
+#include <tafoni/core/index.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
 #include <tafoni/weathering/hydraulic_erosion.hpp>
@@ -95,6 +96,7 @@ struct vertex_room {
             room.whole += std::sqrt(nn);
             double const side = squared_length(r - q);
             double const height = side > 0 ? nn / side : 0.0;
+            if (height < 0.0025 * side) continue;  // a sliver follows its neighbours
             if (lowest < 0 || height < lowest) lowest = height;
         }
         room.area = length(room.sum);
@@ -168,17 +170,46 @@ private:
 /// Moves vertices by the volume that they owe or are owed [thesis, 8.3, signed].
 class sediment_settlement {
 public:
+    /// Looks at a surface whose triangles or vertices are others than before. O(vertices + faces).
+    void adopt(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings) {
+        across_.assign(triangles.size(), {none, none, none});
+        faces_.resize(triangles.size());
+        for (std::size_t f = 0; f < triangles.size(); ++f) {
+            auto const& t = triangles[f];
+            faces_[f] = face_state::of(positions[t[0]], positions[t[1]], positions[t[2]]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::size_t found = 0;
+                for (auto const& c : rings.faces(t[k])) {
+                    if (c.face == f) continue;
+                    auto const& other = triangles[c.face];
+                    std::uint32_t const b = t[(k + 1) % 3];
+                    if (other[0] != b && other[1] != b && other[2] != b) continue;
+                    across_[f][k] = c.face;
+                    ++found;
+                }
+                if (found != 1) across_[f][k] = none;
+            }
+        }
+    }
+
     /// One vertex after the other, by number, along the sum of the normals of its faces weighted by area, in which
     /// direction the volume changes fastest; no farther than `most` and a quarter of the lowest triangle at it. A
-    /// move that turns a face more than 70 degrees away from the normal at one of its corners is halved, twice at most, then left.
-    /// Books what the surface really changed by; of what stays due half goes to the neighbours, by the area around
-    /// them. Adds the way to `wear` and the volume to `sediment`. Returns the vertices that moved.
+    /// move is halved, twice at most, then left, where it would
+    /// - bend two faces at an edge by more than a right angle,
+    /// - make a pit or spike whose sides are steeper than 60 degrees, or
+    /// - make a triangle lower than a tenth of its longest side,
+    /// unless that was so and gets no worse.
+    /// Before it moves, and of what then stays due, half goes to the neighbours by area: a particle wears more than
+    /// the face below it, and no vertex is dug out alone. Books what the surface really changed by. Adds the way to `wear` and the volume to `sediment`. Returns the vertices that moved.
     /// O(vertices + faces at those that owe).
     std::size_t operator()(std::vector<vec3>& positions, std::span<std::array<std::uint32_t, 3> const> triangles,
                            vertex_rings const& rings, volume_unit const& unit, double most, sediment_books& books,
                            std::span<double> wear, std::span<std::int64_t> sediment) {
-        normal_.resize(positions.size());
-        known_.assign(positions.size(), 0);
+        left_.clear();
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
+        }
+        pass_on(triangles, rings, books);
         left_.clear();
         std::size_t moved = 0;
         for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -196,8 +227,9 @@ public:
                     std::int64_t booked = unit.fixed(dot(step, room.sum) / 6);
                     if (d == wanted) booked = books.due[v];  // the rest is rounding
                     if (booked == 0) break;
-                    if (folds(v, to, positions, triangles, rings)) continue;
+                    if (!sound(v, to, room, positions, triangles, rings)) continue;
                     positions[v] = to;
+                    for (std::size_t k = 0; k < then_.size(); ++k) faces_[rings.faces(v)[k].face] = then_[k];
                     wear[v] += length(step);
                     sediment[v] += booked;
                     books.due[v] -= booked;
@@ -208,71 +240,90 @@ public:
             }
             if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
         }
-        pass_on(positions, triangles, rings, books);
+        pass_on(triangles, rings, books);
         return moved;
     }
 
 private:
-    static constexpr double steepest = 0.5;  ///< cosine of 60 degrees
+    static constexpr std::uint32_t none = face_index::none;
+    static constexpr double steepest = 0.7;  ///< cosine of 45 degrees
+    static constexpr double bluntest = 0.3;
+    static constexpr double flattest = 0.1;
 
-    vec3 const& normal(std::size_t v, std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles,
-                       vertex_rings const& rings) {
-        if (known_[v] == 0) {
-            vec3 sum{0, 0, 0};
-            for (auto const& c : rings.faces(v)) {
-                auto const& t = triangles[c.face];
-                sum += cross(vec3{positions[t[1]] - positions[t[0]]}, vec3{positions[t[2]] - positions[t[0]]});
-            }
-            normal_[v] = normalized(sum);
-            known_[v] = 1;
+    struct face_state {
+        vec3 normal{0, 0, 0};
+        double twice = 0;  ///< area
+        double shape = 0;  ///< height over the longest side, of its length
+
+        static face_state of(vec3 const& a, vec3 const& b, vec3 const& c) noexcept {
+            vec3 const u{b - a};
+            vec3 const v{c - a};
+            vec3 const n = cross(u, v);
+            double const l = length(n);
+            double const longest = std::max({squared_length(u), squared_length(v), squared_length(c - b)});
+            if (!(l > 0)) return {};
+            return {.normal = vec3{n[0] / l, n[1] / l, n[2] / l}, .twice = l, .shape = l / longest};
         }
-        return normal_[v];
-    }
+    };
 
-    bool folds(std::size_t v, vec3 const& to, std::span<vec3 const> positions,
+    /// Whether v may go there; `then_` are its faces then.
+    bool sound(std::size_t v, vec3 const& to, vertex_room const& room, std::span<vec3 const> positions,
                std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings) {
-        for (auto const& c : rings.faces(v)) {
-            auto const& t = triangles[c.face];
-            vec3 const& q = positions[t[(c.place + 1) % 3]];
-            vec3 const& r = positions[t[(c.place + 2) % 3]];
-            vec3 const now = normalized(cross(vec3{q - positions[v]}, vec3{r - positions[v]}));
-            vec3 const then = normalized(cross(vec3{q - to}, vec3{r - to}));
-            for (std::uint32_t const w : t) {
-                vec3 const& n = normal(w, positions, triangles, rings);
-                double const after = dot(then, n);
-                if (after < steepest && after < dot(now, n) - 1e-9) return true;
+        auto const around = rings.faces(v);
+        then_.resize(around.size());
+        vec3 sum{0, 0, 0};
+        double whole = 0;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            auto const& t = triangles[around[k].face];
+            auto const at = [&](std::size_t i) -> vec3 const& { return t[i] == v ? to : positions[t[i]]; };
+            face_state const& now = faces_[around[k].face];
+            face_state const& then = then_[k] = face_state::of(at(0), at(1), at(2));
+            if (then.shape < flattest && then.shape < now.shape * (1 - 1e-9)) return false;
+            sum += then.twice * then.normal;
+            whole += then.twice;
+        }
+        if (length(sum) < steepest * whole && length(sum) * room.whole < room.area * whole * (1 - 1e-9)) return false;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            std::uint32_t const f = around[k].face;
+            for (std::uint32_t const g : across_[f]) {
+                if (g == none) continue;
+                face_state const* other = &faces_[g];
+                for (std::size_t i = 0; i < around.size(); ++i) {
+                    if (around[i].face == g) other = &then_[i];
+                }
+                double const after = dot(then_[k].normal, other->normal);
+                if (after < bluntest && after < dot(faces_[f].normal, faces_[g].normal) - 1e-9) return false;
             }
         }
-        return false;
+        return true;
     }
 
-    void pass_on(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings,
-                 sediment_books& books) {
+    /// Half of what `left_` owe or are owed to the other corners of their faces, by area.
+    void pass_on(std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings, sediment_books& books) {
         passed_.clear();
         for (std::uint32_t const v : left_) {
-            auto const around = rings.neighbors(v);
-            weight_.clear();
             double whole = 0;
-            for (std::uint32_t const w : around) {
-                weight_.push_back(vertex_room::at(w, positions, triangles, rings).whole);
-                whole += weight_.back();
-            }
+            for (auto const& c : rings.faces(v)) whole += faces_[c.face].twice;
             if (!(whole > 0)) continue;
-            double const half = 0.5 * static_cast<double>(books.due[v]);
-            for (std::size_t k = 0; k < around.size(); ++k) {
-                auto const part = static_cast<std::int64_t>(half * (weight_[k] / whole));
+            double const each = 0.25 * static_cast<double>(books.due[v]) / whole;
+            std::int64_t gone = 0;
+            for (auto const& c : rings.faces(v)) {
+                auto const part = static_cast<std::int64_t>(each * faces_[c.face].twice);
                 if (part == 0) continue;
-                passed_.emplace_back(around[k], part);
-                passed_.emplace_back(v, -part);
+                auto const& t = triangles[c.face];
+                passed_.emplace_back(t[(c.place + 1) % 3], part);
+                passed_.emplace_back(t[(c.place + 2) % 3], part);
+                gone += 2 * part;
             }
+            books.due[v] -= gone;
         }
         for (auto const& [w, part] : passed_) books.due[w] += part;
     }
 
-    std::vector<vec3> normal_{};
-    std::vector<unsigned char> known_{};
+    std::vector<std::array<std::uint32_t, 3>> across_{};  ///< the face over each side
+    std::vector<face_state> faces_{};
+    std::vector<face_state> then_{};
     std::vector<std::uint32_t> left_{};
-    std::vector<double> weight_{};
     std::vector<std::pair<std::uint32_t, std::int64_t>> passed_{};
 };
 
