@@ -74,6 +74,63 @@ TEST_CASE("a drop that meets flat ground rests on it") {
     CHECK(rain.position(0)[0] == Approx(0.3));
 }
 
+/// n . g / |g| where each of twenty drops, let go on top of a ball, was last at rest on it.
+std::vector<double> left_ball_at(double wide, double friction, double adhesion, double r) {
+    triangle_surface const ball = sphere(4).mesh;
+    mesh_boundary const walls(ball.positions, ball.triangles, r);
+    double const top = 1 + 0.5 * r;
+    rain_particles rain({.box = between(vec3{-wide, -wide, top}, vec3{wide, wide, top})}, {.keep = between(vec3{-3, -3, -1.3}, vec3{3, 3, 3})},
+                        {.particles = 20, .radius = r, .gravity = vec3{0, 0, -10}, .friction = friction, .adhesion = adhesion});
+    std::vector<double> last(20, -2);
+    for (bool any = true; any;) {
+        rain.step(walls, inline_executor{});
+        any = false;
+        for (std::size_t i = 0; i < 20; ++i) {
+            if (rain.id(i) >= 20) continue;
+            any = true;
+            vec3 const p = rain.position(i);
+            if (length(p) < 1 + 0.53 * r) last[rain.id(i)] = -p[2] / length(p);
+        }
+    }
+    return last;
+}
+
+TEST_CASE("slow drops run round a ball to where adhesion no longer holds them, n . g = adhesion |g|") {
+    for (double const adhesion : {0.0, 0.3, 0.6, 0.9}) {
+        for (double const at : left_ball_at(0.4, 40, adhesion, 0.03)) {
+            CHECK(at > adhesion);
+            CHECK(at < adhesion + 0.06);
+        }
+    }
+}
+
+TEST_CASE("fast drops leave a ball where n . g + v^2 / R = adhesion |g|") {
+    for (double const adhesion : {0.0, 0.5, 0.8}) {
+        double sum = 0;
+        for (double const at : left_ball_at(0.05, 0, adhesion, 0.03)) {
+            sum += at;
+            CHECK(at == Approx(-(2 - adhesion) / 3).margin(0.15));  // each at the edge of a face
+        }
+        CHECK(sum / 20 == Approx(-(2 - adhesion) / 3).margin(0.04));  // v^2 = 2 g R (1 - cos)
+    }
+}
+
+TEST_CASE("a drop hangs below what overhangs wholly where adhesion is more than gravity, and dries there") {
+    triangle_surface const ball = sphere(4).mesh;
+    double const r = 0.03;
+    mesh_boundary const walls(ball.positions, ball.triangles, r);
+    rain_particles rain({.box = between(vec3{0.1, 0.1, 1.05}, vec3{0.4, 0.4, 1.05})}, {.keep = between(vec3{-3, -3, -3}, vec3{3, 3, 3})},
+                        {.particles = 20, .radius = r, .friction = 20, .adhesion = 1.1, .lifetime = 30});
+    double t = 0;
+    while (t < 29) t += rain.step(walls, inline_executor{});
+    for (std::size_t i = 0; i < 20; ++i) {
+        CHECK(rain.id(i) < 20);
+        CHECK(rain.position(i)[2] == Approx(-1 - 0.5 * r).margin(0.003));
+    }
+    while (t < 31) t += rain.step(walls, inline_executor{});
+    for (std::size_t i = 0; i < 20; ++i) CHECK(rain.id(i) >= 20);
+}
+
 TEST_CASE("threads change no bit of the rain", "[threads]") {
     triangle_surface const ground = floor_at(0.3);
     mesh_boundary const walls(ground.positions, ground.triangles, 0.3);

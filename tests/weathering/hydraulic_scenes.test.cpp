@@ -70,7 +70,7 @@ TEST_CASE("in a tunnel erosion is strongest where the water first meets the rock
     REQUIRE(dot(n, vec3{-a[0], -a[1], 0}) > 0);
     rain_particles const water({.box = between(vec3{-0.4, -0.4, 11}, vec3{0.4, 0.4, 12}), .velocity = vec3{0, 0, -2}},
                                {.keep = between(vec3{-3, -3, -3}, vec3{13, 3, 13})},
-                               {.particles = 400, .radius = 0.3, .friction = 10, .lifetime = 12});
+                               {.particles = 400, .radius = 0.3, .friction = 5, .lifetime = 12});
     hydraulic_run run(tube, water, partheniades_erosion{.coefficient = 2e-5, .critical = 8});
     run.run(500);
     CHECK(run.balanced());

@@ -26,6 +26,8 @@ struct rain_options {
     double radius = 1;                 ///< at which a drop touches the ground, length unit, > 0
     vec3 gravity{0, 0, -9.81};         ///< length unit / s^2
     double friction = 1;               ///< share of the velocity along the ground that is lost per second, 1/s, >= 0
+    double adhesion = 0.8;             ///< pull of the ground on a drop that touches it, over that of gravity, in [0, 10]:
+                                       ///< a slow drop hangs on where it overhangs by less than asin(adhesion)
     double largest_step = 0.05;        ///< s, > 0
     double lifetime = 30;              ///< s after which a drop has seeped away, > 0
     std::uint64_t seed = 0;
@@ -35,7 +37,7 @@ struct rain_options {
         out.add(std::uint64_t{particles});
         out.add(radius);
         out.add(gravity);
-        for (double const v : {friction, largest_step, lifetime}) out.add(v);
+        for (double const v : {friction, adhesion, largest_step, lifetime}) out.add(v);
         out.add(seed);
     }
 
@@ -45,12 +47,17 @@ struct rain_options {
         detail::require_range("rain_options.radius", radius, std::numeric_limits<double>::min(), 1e100);
         for (int d = 0; d < 3; ++d) detail::require_range("rain_options.gravity", gravity[d], -1e100, 1e100);
         detail::require_range("rain_options.friction", friction, 0, 1e6);
+        detail::require_range("rain_options.adhesion", adhesion, 0, 10);
         detail::require_range("rain_options.largest_step", largest_step, 1e-12, 1e12);
         detail::require_range("rain_options.lifetime", lifetime, 1e-12, 1e12);
     }
 };
 
 /// Drops without pressure: ballistic in the air, along the surface once they touch it, slowed by friction.
+///
+/// The ground pulls a drop within `radius` by adhesion x |g|, and no closer than half the radius, where it rests; so it
+/// runs round a form as long as n . g + v^2 / R < adhesion |g|, with n out of the ground and R the form's radius, and
+/// drips off or shoots over the edge from there on.
 ///
 /// A drop that leaves the sink's box or outlives its time starts again in the emitter under a new id. Draws depend on
 /// (seed, id) only. Models `particle_fluid`.
@@ -60,6 +67,7 @@ public:
     /// \throws invalid_input  `bad_parameter`, `bad_box`.
     rain_particles(box_emitter const& emitter, box_sink const& sink, rain_options const& options = {})
         : emitter_((emitter.validate(), emitter)), sink_((sink.validate(), sink)), options_((options.validate(), options)) {
+        pull_ = options_.adhesion * length(options_.gravity);
         drops_.resize(options_.particles);
         for (std::size_t i = 0; i < drops_.size(); ++i) drops_[i] = fresh(i);
         next_id_ = drops_.size();
@@ -155,7 +163,7 @@ private:
     [[nodiscard]] double time_step() const noexcept {
         double fastest = 0;
         for (drop const& d : drops_) fastest = std::max(fastest, squared_length(d.velocity));
-        double const g = length(options_.gravity);
+        double const g = length(options_.gravity) + pull_;
         double const far = 0.5 * options_.radius;
         // far = v dt + g dt^2
         double const v = std::sqrt(fastest);
@@ -166,30 +174,38 @@ private:
     template <fluid_boundary B>
     void move(drop& d, B const& walls, double dt) const {
         for (int a = 0; a < 3; ++a) d.velocity[a] += options_.gravity[a] * dt;
-        bool touches = false;
+        double const rest = 0.5 * options_.radius;
+        boundary_contact nearest;
+        double near = std::numeric_limits<double>::infinity();
         vec3 push{0, 0, 0};
         walls.for_each_contact(d.position, options_.radius, [&](boundary_contact const& c) {
-            touches = true;
-            double const into = dot(d.velocity, c.normal);
-            if (into < 0) d.velocity = vec3{d.velocity[0] - into * c.normal[0], d.velocity[1] - into * c.normal[1],
-                                            d.velocity[2] - into * c.normal[2]};
-            double const deep = 0.5 * options_.radius - c.distance;  // rests at half its radius
-            if (deep > 0) push = vec3{push[0] + deep * c.normal[0], push[1] + deep * c.normal[1], push[2] + deep * c.normal[2]};
+            double const deep = rest - c.distance;
+            add(d.velocity, std::max(std::min(deep, 0.0) / dt - dot(d.velocity, c.normal), 0.0), c.normal);
+            if (deep > 0) add(push, deep, c.normal);
+            if (std::fabs(c.distance) < near) {
+                near = std::fabs(c.distance);
+                nearest = c;
+            }
         });
-        if (touches) {
+        if (std::isfinite(near)) {
+            double const leaves = dot(d.velocity, nearest.normal) - std::min(rest - nearest.distance, 0.0) / dt;
+            add(d.velocity, -std::max(std::min(pull_ * dt, leaves), 0.0), nearest.normal);
             double const slower = 1 / (1 + options_.friction * dt);
             for (int a = 0; a < 3; ++a) d.velocity[a] *= slower;
         }
         double const far = length(push);
-        double const most = 0.5 * options_.radius;
-        double const share = far > most ? most / far : 1.0;
+        double const share = far > rest ? rest / far : 1.0;
         for (int a = 0; a < 3; ++a) d.position[a] += d.velocity[a] * dt + share * push[a];
         d.age += dt;
+    }
+    static void add(vec3& to, double share, vec3 const& way) noexcept {
+        to = vec3{to[0] + share * way[0], to[1] + share * way[1], to[2] + share * way[2]};
     }
 
     box_emitter emitter_;
     box_sink sink_;
     rain_options options_;
+    double pull_ = 0;  ///< of the ground, length unit / s^2
     std::vector<drop> drops_{};
     detail::visit_order order_{};
     std::uint64_t next_id_ = 0;
