@@ -104,6 +104,7 @@ struct bubble_ratio {
     /// O(vertices x triangles in a ball), about 7 us per vertex by default. \throws invalid_input  bad_parameter.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
+        detail::require_one_per_vertex("bubble_ratio", s, mean.size());
         validate();
         double const r = radius > 0 ? radius : 3 * mean_edge(s);
         if (!(r > 0)) {

@@ -5,9 +5,9 @@
 
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/detail/corner_sums.hpp>
+#include <tafoni/curvature/detail/face_sides.hpp>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,64 +16,72 @@ namespace tafoni {
 
 namespace detail {
 
-struct laplacian_sum {
-    vec3 edges{0, 0, 0};   ///< sum of (cot + cot) (x_i - x_j)
-    vec3 normal{0, 0, 0};  ///< sum of area normals
-    double area = 0;
+/// Sums over the corners at a vertex, in one line of cache: of (cot + cot) (x_i - x_j), of area normals, of areas.
+struct alignas(64) laplacian_sum {
+    std::array<number_pair, 4> of{};
 
-    laplacian_sum& operator+=(laplacian_sum const& o) noexcept {
-        for (int d = 0; d < 3; ++d) edges[d] += o.edges[d];
-        for (int d = 0; d < 3; ++d) normal[d] += o.normal[d];
-        area += o.area;
-        return *this;
-    }
+    [[nodiscard]] vec3 edges() const noexcept { return vec3{of[0][0], of[0][1], of[1][0]}; }
+    [[nodiscard]] vec3 normal() const noexcept { return vec3{of[1][1], of[2][0], of[2][1]}; }
+    [[nodiscard]] double area() const noexcept { return of[3][0]; }
+};
+inline void add_to(laplacian_sum& at, laplacian_sum const& corner) noexcept {
+    for (std::size_t k = 0; k < 4; ++k) at.of[k] += corner.of[k];
+}
+
+/// What the corners of a triangle weigh.
+template <class T>
+struct corner_weights {
+    three<T> area{};
+    three<T> cot{};
 };
 
+template <class T>
 struct face_cotangents {
-    struct kept {
-        std::array<double, 3> area;
-        std::array<double, 3> cot;
-    };
-    triangle_sides sides{};
-    vec3 normal{0, 0, 0};
-    std::array<double, 3> area{};
-    std::array<double, 3> cot{};
+    three<T> a{};
+    three<T> b{};
+    three<T> normal{};
+    corner_weights<T> weights{};
 
-    [[nodiscard]] kept part() const noexcept { return {area, cot}; }
-    [[nodiscard]] laplacian_sum corner(std::size_t k) const noexcept {
+    explicit face_cotangents(face_sides<T> const& t) noexcept : a(t.a), b(t.b) {
+        T const area2 = lane_root(t.det);
+        T const inverse = 1 / area2;
+        auto const valid = t.valid();
+        weights = {where(valid, t.corner_areas(area2, inverse)),
+                   where(valid, three<T>{t.ab * inverse, (t.aa - t.ab) * inverse, (t.bb - t.ab) * inverse})};
+        normal = where(valid, t.normal);
+    }
+    face_cotangents(three<T> const& side_a, three<T> const& side_b, corner_weights<T> const& w) noexcept
+        : a(side_a), b(side_b), weights(w) {
+        // The parts of the area of a valid triangle add up to it; of others they are zero.
+        normal = where(w.area.x + w.area.y + w.area.z > 0, cross(a, b));
+    }
+    [[nodiscard]] corner_weights<double> part(std::size_t which) const noexcept {
+        return {one_of(weights.area, which), one_of(weights.cot, which)};
+    }
+    [[nodiscard]] laplacian_sum corner(std::size_t k, std::size_t which) const noexcept {
         // Side a leads from corner 0 to 1 and lies opposite to corner 2, b from 0 to 2 opposite to 1.
-        vec3 const& a = sides.a;
-        vec3 const& b = sides.b;
-        laplacian_sum r{.edges = vec3{0, 0, 0}, .normal = normal, .area = area[k]};
-        for (int d = 0; d < 3; ++d) {
-            double const c = b[d] - a[d];
-            r.edges[d] = k == 0   ? -(cot[2] * a[d]) - cot[1] * b[d]
-                         : k == 1 ? cot[2] * a[d] - cot[0] * c
-                                  : cot[1] * b[d] + cot[0] * c;
-        }
-        return r;
+        three<T> const& cot = weights.cot;
+        auto const along = [&](T const& p, T const& q) {
+            return k == 0 ? -(cot.z * p) - cot.y * q : k == 1 ? cot.z * p - cot.x * (q - p) : cot.y * q + cot.x * (q - p);
+        };
+        T const x = along(a.x, b.x);
+        T const y = along(a.y, b.y);
+        T const z = along(a.z, b.z);
+        return {{both(x, y, which), both(z, normal.x, which), both(normal.y, normal.z, which),
+                 both(weights.area[k], T{}, which)}};
     }
 };
 
 struct faces_cotangents {
     surface_view const& surface;
 
-    [[nodiscard]] face_cotangents face(std::size_t f) const noexcept {
-        triangle_sides const t(surface, f);
-        if (!t.valid) return {};
-        double const inverse = 1 / std::sqrt(t.det);
-        return {t, cross(t.a, t.b), t.corner_areas(),
-                {t.ab * inverse, (t.aa - t.ab) * inverse, (t.bb - t.ab) * inverse}};
+    [[nodiscard]] auto of(std::size_t f) const noexcept { return face_cotangents<double>(sides_of(surface, f)); }
+    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+        return face_cotangents<number_pair>(sides_of(surface, f, g));
     }
-    [[nodiscard]] face_cotangents face(std::size_t f, face_cotangents::kept const& k) const noexcept {
-        face_cotangents out{.sides = {}, .area = k.area, .cot = k.cot};
-        if (k.area[0] == 0 && k.area[1] == 0 && k.area[2] == 0) return out;
-        auto const& t = surface.triangles[f];
-        vec3 const& p = surface.positions[t[0]];
-        out.sides.a = vec3{surface.positions[t[1]] - p};
-        out.sides.b = vec3{surface.positions[t[2]] - p};
-        out.normal = cross(out.sides.a, out.sides.b);
-        return out;
+    [[nodiscard]] auto of(std::size_t f, corner_weights<double> const& k) const noexcept {
+        corner_differences const d{surface.positions, surface.triangles};
+        return face_cotangents<double>(d.of(f, 1), d.of(f, 2), k);
     }
 };
 
@@ -87,15 +95,17 @@ struct faces_cotangents {
 /// small error that refinement does not remove. At the border of an open mesh the mean of the inner
 /// neighbours' values, or 0. Models `curvature_estimator`.
 struct cotangent {
-    /// O(vertices + faces); 56 bytes of scratch memory per vertex, or 48 per face with several threads.
+    /// O(vertices + faces); 64 bytes of scratch memory per vertex, or 48 per face with several threads.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
+        detail::require_one_per_vertex("cotangent", s, mean.size());
         auto sums = detail::corner_scratch<detail::laplacian_sum>(s, executor);
         detail::sum_corners(
             s, std::span<detail::laplacian_sum>(sums), detail::laplacian_sum{}, detail::faces_cotangents{s}, executor,
             [&](std::size_t v, detail::laplacian_sum const& sum) {
-                double const scale = length(sum.normal) * sum.area;
-                mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges, sum.normal) / scale) : 0.0;
+                vec3 const normal = sum.normal();
+                double const scale = length(normal) * sum.area();
+                mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges(), normal) / scale) : 0.0;
             });
         detail::fill_border(s, mean, executor);
     }

@@ -89,6 +89,7 @@ struct quadric_fit {
     /// O(vertices x neighbours of two rings), about 0.5 us per vertex; 24 bytes of scratch memory per vertex.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
+        detail::require_one_per_vertex("quadric_fit", s, mean.size());
         std::vector<vec3> normal(s.positions.size());
         vertex_normals(s, normal, executor);
         executor.for_blocks(mean.size(), detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
@@ -98,6 +99,9 @@ struct quadric_fit {
     }
 
 private:
+    /// Neighbours beyond which a vertex leads to no second ring, or the vertices around it would cost the square of them.
+    static constexpr std::size_t hub = 256;
+
     /// The vertices of two rings, each once.
     struct neighborhood {
         explicit neighborhood(std::size_t vertices) : seen(vertices, 0) {}
@@ -112,7 +116,9 @@ private:
             }
             std::size_t const first = around.size();
             for (std::size_t k = 0; k < first; ++k) {
-                for (std::uint32_t const w : rings.neighbors(around[k])) {
+                auto const ring = rings.neighbors(around[k]);
+                if (ring.size() > hub) continue;
+                for (std::uint32_t const w : ring) {
                     if (seen[w] == now) continue;
                     seen[w] = now;
                     around.push_back(w);

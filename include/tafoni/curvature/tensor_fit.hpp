@@ -5,9 +5,9 @@
 
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/detail/corner_sums.hpp>
+#include <tafoni/curvature/detail/face_sides.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,45 +16,53 @@ namespace tafoni {
 
 namespace detail {
 
+/// The sum of values times weights, and of the weights.
 struct weighted_mean {
-    double sum = 0;
-    double weight = 0;
-
-    weighted_mean& operator+=(weighted_mean const& o) noexcept {
-        sum += o.sum;
-        weight += o.weight;
-        return *this;
-    }
+    number_pair sums{0, 0};
 };
+inline void add_to(weighted_mean& at, number_pair const& corner) noexcept { at.sums += corner; }
 
 /// Half the trace of the tensor that fits the normals' differences along the three sides of a triangle best.
 ///
 /// Setting the gradient of the sum of |S e - d|^2 over the sides e to zero gives S M + M S = D + D^T with M the
 /// sum of e e^T and D that of d e^T, so tr S = tr(M^-1 D); for three sides that sum to zero this is the
 /// divergence of the normal interpolated over the triangle.
+template <class T>
 struct face_mean_curvature {
-    double twice_mean = 0;
-    std::array<double, 3> area{};
+    T twice_mean{};
+    three<T> area{};
 
-    [[nodiscard]] weighted_mean corner(std::size_t k) const noexcept { return {twice_mean * area[k], area[k]}; }
-    [[nodiscard]] face_mean_curvature part() const noexcept { return *this; }
+    face_mean_curvature() = default;
+    /// `da`, `db`: of the normals, as the sides of the positions.
+    face_mean_curvature(face_sides<T> const& t, three<T> const& da, three<T> const& db) noexcept {
+        auto const valid = t.valid();
+        T const area2 = lane_root(t.det);
+        T const trace = (t.bb * dot(t.a, da) + t.aa * dot(t.b, db) - t.ab * (dot(t.a, db) + dot(t.b, da))) / t.det;
+        twice_mean = valid ? trace : T{};
+        area = where(valid, t.corner_areas(area2, 1 / area2));
+    }
+    [[nodiscard]] number_pair corner(std::size_t k, std::size_t which) const noexcept {
+        return both(twice_mean * area[k], area[k], which);
+    }
+    [[nodiscard]] face_mean_curvature<double> part(std::size_t which) const noexcept {
+        face_mean_curvature<double> one;
+        one.twice_mean = one_of(twice_mean, which);
+        one.area = one_of(area, which);
+        return one;
+    }
 };
 
 struct face_mean_curvatures {
     surface_view const& surface;
-    std::span<vec3 const> normal;
+    corner_differences normal;
 
-    [[nodiscard]] face_mean_curvature face(std::size_t f) const noexcept {
-        triangle_sides const t(surface, f);
-        if (!t.valid) return {};
-        auto const& corners = surface.triangles[f];
-        vec3 const& n = normal[corners[0]];
-        vec3 const da{normal[corners[1]] - n};
-        vec3 const db{normal[corners[2]] - n};
-        return {(t.bb * dot(t.a, da) + t.aa * dot(t.b, db) - t.ab * (dot(t.a, db) + dot(t.b, da))) / t.det,
-                t.corner_areas()};
+    [[nodiscard]] auto of(std::size_t f) const noexcept {
+        return face_mean_curvature<double>(sides_of(surface, f), normal.of(f, 1), normal.of(f, 2));
     }
-    [[nodiscard]] face_mean_curvature const& face(std::size_t, face_mean_curvature const& m) const noexcept { return m; }
+    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+        return face_mean_curvature<number_pair>(sides_of(surface, f, g), normal.of_two(f, g, 1), normal.of_two(f, g, 2));
+    }
+    [[nodiscard]] auto const& of(std::size_t, face_mean_curvature<double> const& m) const noexcept { return m; }
 };
 
 }  // namespace detail
@@ -70,13 +78,15 @@ struct tensor_fit {
     /// O(vertices + faces); 40 bytes of scratch memory per vertex, or 24 and 48 per face with several threads.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
+        detail::require_one_per_vertex("tensor_fit", s, mean.size());
         std::vector<vec3> normal(s.positions.size());
         vertex_normals(s, normal, executor);
         auto sums = detail::corner_scratch<detail::weighted_mean>(s, executor);
         detail::sum_corners(
-            s, std::span<detail::weighted_mean>(sums), detail::weighted_mean{}, detail::face_mean_curvatures{s, normal},
-            executor, [&](std::size_t v, detail::weighted_mean const& at) {
-                mean[v] = at.weight > 0 ? 0.5 * (at.sum / at.weight) : 0.0;
+            s, std::span<detail::weighted_mean>(sums), detail::weighted_mean{},
+            detail::face_mean_curvatures{s, {normal, s.triangles}}, executor,
+            [&](std::size_t v, detail::weighted_mean const& at) {
+                mean[v] = at.sums[1] > 0 ? 0.5 * (at.sums[0] / at.sums[1]) : 0.0;
             });
     }
 };

@@ -5,9 +5,10 @@
 
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/detail/corner_sums.hpp>
+#include <tafoni/curvature/detail/face_sides.hpp>
 
-#include <array>
 #include <cstddef>
+#include <cstring>
 #include <span>
 
 namespace tafoni {
@@ -15,35 +16,59 @@ namespace tafoni {
 namespace detail {
 
 /// The normal of a triangle, weighted for each corner by 1 / (product of the squared sides there).
+template <class T>
 struct weighted_face_normal {
-    std::array<double, 3> area{};
-    std::array<double, 3> weight{};
+    struct at_corner {
+        number_pair xy;
+        double z;
+    };
+    three<T> area{};
+    three<T> weight{};
 
-    [[nodiscard]] vec3 corner(std::size_t k) const noexcept {
-        return vec3{area[0] * weight[k], area[1] * weight[k], area[2] * weight[k]};
+    weighted_face_normal() = default;
+    explicit weighted_face_normal(face_sides<T> const& t) noexcept {
+        T const a = 1 / t.aa;
+        T const b = 1 / t.bb;
+        T const c = 1 / t.cc();
+        auto const valid = t.valid();
+        area = where(valid, t.normal);
+        weight = where(valid, three<T>{a * b, a * c, b * c});
     }
-    [[nodiscard]] weighted_face_normal part() const noexcept { return *this; }
+    [[nodiscard]] at_corner corner(std::size_t k, std::size_t which) const noexcept {
+        T const& w = weight[k];
+        return {both(area.x * w, area.y * w, which), one_of(area.z * w, which)};
+    }
+    [[nodiscard]] weighted_face_normal<double> part(std::size_t which) const noexcept {
+        weighted_face_normal<double> one;
+        one.area = one_of(area, which);
+        one.weight = one_of(weight, which);
+        return one;
+    }
 };
+template <class AtCorner>
+void add_to(vec3& sum, AtCorner const& n) noexcept {
+    number_pair xy;
+    std::memcpy(&xy, sum.data(), sizeof xy);
+    xy += n.xy;
+    std::memcpy(sum.data(), &xy, sizeof xy);
+    sum[2] += n.z;
+}
 
 struct weighted_face_normals {
     surface_view const& surface;
 
-    [[nodiscard]] weighted_face_normal face(std::size_t f) const noexcept {
-        triangle_sides const t(surface, f);
-        if (!t.valid) return {};
-        vec3 const n = cross(t.a, t.b);
-        double const a = 1 / t.aa;
-        double const b = 1 / t.bb;
-        double const c = 1 / t.cc();
-        return {{n[0], n[1], n[2]}, {a * b, a * c, b * c}};
+    [[nodiscard]] auto of(std::size_t f) const noexcept { return weighted_face_normal<double>(sides_of(surface, f)); }
+    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+        return weighted_face_normal<number_pair>(sides_of(surface, f, g));
     }
-    [[nodiscard]] weighted_face_normal const& face(std::size_t, weighted_face_normal const& n) const noexcept { return n; }
+    [[nodiscard]] auto const& of(std::size_t, weighted_face_normal<double> const& n) const noexcept { return n; }
 };
 
 struct vertex_normals_fn {
     /// `normals` has one entry per vertex. O(vertices + faces); 48 bytes of scratch memory per face with several threads.
     template <executor E = inline_executor>
     void operator()(surface_view const& s, std::span<vec3> normals, E const& executor = {}) const {
+        require_one_per_vertex("vertex_normals", s, normals.size());
         sum_corners(s, normals, vec3{0, 0, 0}, weighted_face_normals{s}, executor,
                     [&](std::size_t v, vec3 const& sum) { normals[v] = normalized(sum); });
     }

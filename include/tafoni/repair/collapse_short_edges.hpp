@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,91 @@ struct collapse_report {
 
 namespace detail {
 
-/// One pass: edges whose surroundings no other edge of the pass has changed.
+struct short_edge {
+    double square = 0;                   ///< of its length
+    std::array<std::uint32_t, 2> ends{};  ///< ascending
+};
+
+/// Adds the edges between `begin` <= lower end < `end` whose squared length is below `limit`. O(edges there).
+inline void find_short_edges(std::span<vec3 const> positions, vertex_rings const& rings, double limit, std::size_t begin,
+                             std::size_t end, std::vector<short_edge>& found) {
+    for (std::size_t v = begin; v < end; ++v) {
+        for (std::uint32_t const w : rings.neighbors(v)) {
+            if (w < v) continue;
+            double const square = squared_length(positions[v] - positions[w]);
+            if (square < limit) found.push_back({square, {static_cast<std::uint32_t>(v), w}});
+        }
+    }
+}
+
+/// Which edges of a surface may be collapsed, and where their ends meet.
+class collapse_rules {
+public:
+    /// Views of what outlives the rules; `rings` are right at the ends of every edge that is asked about.
+    collapse_rules(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles,
+                   vertex_rings const& rings)
+        : positions_(positions), triangles_(triangles), rings_(rings) {}
+
+    /// Nothing where the surface would fold, be pinched or turn over. `lost(w)` tells how many neighbours a vertex has
+    /// lost since the rings were made. O(triangles at the ends); at an end of more than `many` triangles that of the other.
+    template <class Lost>
+    [[nodiscard]] std::optional<vec3> target(std::uint32_t u, std::uint32_t v, Lost const& lost) {
+        auto const [few, more] = rings_.faces(u).size() <= rings_.faces(v).size() ? std::array{u, v} : std::array{v, u};
+        // The link condition: the ends share no neighbours but the corners opposite the edge.
+        common_.clear();
+        auto const other = rings_.neighbors(more);
+        for (std::uint32_t const w : rings_.neighbors(few)) {
+            if (std::binary_search(other.begin(), other.end(), w)) common_.push_back(w);
+        }
+        std::size_t beside = 0;
+        for (auto const& c : rings_.faces(few)) beside += has(triangles_[c.face], more) ? 1U : 0U;
+        if (beside == 0 || beside > 2 || common_.size() != beside) return {};
+        bool const border_u = rings_.is_border(u);
+        bool const border_v = rings_.is_border(v);
+        if (beside == 2 && border_u && border_v) return {};  // would pinch the surface
+        if (beside == 2 && rings_.faces(u).size() + rings_.faces(v).size() <= 6) return {};  // a tetrahedron would fold
+        for (std::uint32_t const w : common_) {
+            if (rings_.neighbors(w).size() - lost(w) <= 3 && !rings_.is_border(w)) return {};
+        }
+        // A border keeps its line: the end that lies on it keeps its place. So does the hub of very many triangles.
+        vec3 const p = positions_[u];
+        vec3 const q = positions_[v];
+        bool const hub = rings_.faces(more).size() > many;
+        vec3 const meet = border_u != border_v ? (border_u ? p : q) : hub ? positions_[more] : vec3{0.5 * p + 0.5 * q};
+        if (turns_over(u, v, meet) || turns_over(v, u, meet)) return {};
+        return meet;
+    }
+    /// The vertices opposite the edge that `target` was last asked about.
+    [[nodiscard]] std::span<std::uint32_t const> opposite() const noexcept { return common_; }
+
+private:
+    static constexpr std::size_t many = 256;
+
+    /// Whether a triangle at `moving`, but for those beside the edge, would face the other way.
+    [[nodiscard]] bool turns_over(std::uint32_t moving, std::uint32_t other, vec3 const& target) const {
+        if (positions_[moving] == target) return false;
+        for (auto const& c : rings_.faces(moving)) {
+            auto const& t = triangles_[c.face];
+            if (has(t, other)) continue;
+            vec3 const& a = positions_[t[(c.place + 1) % 3]];
+            vec3 const& b = positions_[t[(c.place + 2) % 3]];
+            vec3 const before = cross(a - positions_[moving], b - positions_[moving]);
+            vec3 const after = cross(a - target, b - target);
+            if (dot(before, after) < 0.25 * length(before) * length(after)) return true;
+        }
+        return false;
+    }
+    [[nodiscard]] static bool has(std::array<std::uint32_t, 3> const& t, std::uint32_t v) noexcept {
+        return t[0] == v || t[1] == v || t[2] == v;
+    }
+
+    std::span<vec3 const> positions_;
+    std::span<std::array<std::uint32_t, 3> const> triangles_;
+    vertex_rings const& rings_;
+    std::vector<std::uint32_t> common_{};
+};
+
+/// One pass: edges neither end of which another edge of the pass has changed.
 class edge_collapser {
 public:
     /// `known` are the rings of the surface as it is, or null.
@@ -35,109 +120,64 @@ public:
 
     /// Number of collapsed edges; `survivor` leads every vertex to the one that it became. O(faces).
     std::size_t pass(std::vector<std::uint32_t>& survivor) {
-        std::vector<std::array<std::uint32_t, 2>> const edges = short_edges();
+        std::vector<short_edge> edges;
+        if (known_ != nullptr) {
+            find_short_edges(surface_.positions, *known_, limit_, 0, surface_.positions.size(), edges);
+        } else if (any_short_side()) {
+            rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+            find_short_edges(surface_.positions, rings_, limit_, 0, surface_.positions.size(), edges);
+        }
         if (edges.empty()) return 0;
-        if (known_ == nullptr) rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
+        sort(edges);
         vertex_rings const& rings = known_ != nullptr ? *known_ : rings_;
         known_ = nullptr;
+        collapse_rules rules(surface_.positions, surface_.triangles, rings);
         touched_.assign(surface_.positions.size(), 0);
+        lost_.assign(surface_.positions.size(), 0);
         std::size_t done = 0;
-        for (auto const& [u, v] : edges) {
-            if (collapse(rings, u, v)) {
-                survivor[v] = u;
-                ++done;
-            }
+        for (short_edge const& e : edges) {
+            auto const [u, v] = e.ends;
+            if (touched_[u] != 0 || touched_[v] != 0) continue;
+            std::optional<vec3> const meet = rules.target(u, v, [&](std::uint32_t w) { return lost_[w]; });
+            if (!meet) continue;
+            for (std::uint32_t const w : rules.opposite()) ++lost_[w];
+            collapse(rings, u, v, *meet);
+            survivor[v] = u;
+            ++done;
         }
         return done;
     }
 
 private:
-    /// Shortest first, ties by place.
-    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> short_edges() const {
-        struct candidate {
-            double square;
-            std::array<std::uint32_t, 2> ends;
-        };
-        std::vector<candidate> found;
+    /// O(faces).
+    [[nodiscard]] bool any_short_side() const noexcept {
         auto const& p = surface_.positions;
-        for (auto const& t : surface_.triangles) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                std::uint32_t const u = std::min(t[k], t[(k + 1) % 3]);
-                std::uint32_t const v = std::max(t[k], t[(k + 1) % 3]);
-                double const square = squared_length(p[u] - p[v]);
-                if (u != v && square < limit_) found.push_back({square, {u, v}});
-            }
-        }
-        std::sort(found.begin(), found.end(), [&](candidate const& a, candidate const& b) {
+        return std::any_of(surface_.triangles.begin(), surface_.triangles.end(), [&](auto const& t) {
+            return squared_length(p[t[0]] - p[t[1]]) < limit_ || squared_length(p[t[1]] - p[t[2]]) < limit_ ||
+                   squared_length(p[t[2]] - p[t[0]]) < limit_;
+        });
+    }
+    /// Shortest first, ties by place.
+    void sort(std::vector<short_edge>& edges) const {
+        auto const& p = surface_.positions;
+        std::sort(edges.begin(), edges.end(), [&](short_edge const& a, short_edge const& b) {
             if (a.square != b.square) return a.square < b.square;
             if (p[a.ends[0]] != p[b.ends[0]]) return lexicographically_less(p[a.ends[0]], p[b.ends[0]]);
             if (p[a.ends[1]] != p[b.ends[1]]) return lexicographically_less(p[a.ends[1]], p[b.ends[1]]);
             return a.ends < b.ends;
         });
-        std::vector<std::array<std::uint32_t, 2>> edges;
-        for (candidate const& c : found) {
-            if (edges.empty() || edges.back() != c.ends) edges.push_back(c.ends);
-        }
-        return edges;
     }
-
-    bool collapse(vertex_rings const& rings, std::uint32_t u, std::uint32_t v) {
-        if (touched_[u] != 0 || touched_[v] != 0) return false;
-        auto const at_u = rings.neighbors(u);
-        auto const at_v = rings.neighbors(v);
-        // The link condition: the ends share no neighbours but the corners opposite the edge.
-        common_.clear();
-        std::set_intersection(at_u.begin(), at_u.end(), at_v.begin(), at_v.end(), std::back_inserter(common_));
-        std::size_t beside = 0;
-        for (auto const& c : rings.faces(u)) beside += has(surface_.triangles[c.face], v) ? 1U : 0U;
-        if (beside == 0 || beside > 2 || common_.size() != beside) return false;
-        bool const border_u = rings.is_border(u);
-        bool const border_v = rings.is_border(v);
-        if (beside == 2 && border_u && border_v) return false;  // would pinch the surface
-        if (beside == 2 && rings.faces(u).size() + rings.faces(v).size() <= 6) return false;  // a tetrahedron would fold
-        for (std::uint32_t const w : common_) {
-            if (rings.neighbors(w).size() <= 3 && !rings.is_border(w)) return false;
-        }
-        for (auto const& ring : {at_u, at_v}) {
-            for (std::uint32_t const w : ring) {
-                if (touched_[w] != 0) return false;
-            }
-        }
-        // A border keeps its line: the end that lies on it keeps its place.
-        vec3 const p = surface_.positions[u];
-        vec3 const q = surface_.positions[v];
-        vec3 target = border_u == border_v ? vec3{0.5 * p + 0.5 * q} : border_u ? p : q;
-        if (turns_over(rings, u, v, target) || turns_over(rings, v, u, target)) return false;
-        surface_.positions[u] = target;
+    void collapse(vertex_rings const& rings, std::uint32_t u, std::uint32_t v, vec3 const& meet) {
+        surface_.positions[u] = meet;
         for (auto const& c : rings.faces(v)) {
             for (std::uint32_t& corner : surface_.triangles[c.face]) {
                 if (corner == v) corner = u;
             }
         }
-        for (auto const& ring : {at_u, at_v}) {
+        for (auto const& ring : {rings.neighbors(u), rings.neighbors(v)}) {
             for (std::uint32_t const w : ring) touched_[w] = 1;
         }
         touched_[u] = touched_[v] = 1;
-        return true;
-    }
-
-    /// Whether a triangle at `moving`, but for those beside the edge, would face the other way.
-    [[nodiscard]] bool turns_over(vertex_rings const& rings, std::uint32_t moving, std::uint32_t other, vec3 const& target) const {
-        for (auto const& c : rings.faces(moving)) {
-            auto const& t = surface_.triangles[c.face];
-            if (has(t, other)) continue;
-            vec3 const& a = surface_.positions[t[(c.place + 1) % 3]];
-            vec3 const& b = surface_.positions[t[(c.place + 2) % 3]];
-            vec3 const before = cross(a - surface_.positions[moving], b - surface_.positions[moving]);
-            vec3 const after = cross(a - target, b - target);
-            double const along = dot(before, after);
-            if (along < 0.25 * length(before) * length(after)) return true;
-        }
-        return false;
-    }
-
-    [[nodiscard]] static bool has(std::array<std::uint32_t, 3> const& t, std::uint32_t v) noexcept {
-        return t[0] == v || t[1] == v || t[2] == v;
     }
 
     triangle_surface& surface_;
@@ -145,14 +185,14 @@ private:
     vertex_rings const* known_;
     vertex_rings rings_{};
     std::vector<unsigned char> touched_{};
-    std::vector<std::uint32_t> common_{};
+    std::vector<std::uint32_t> lost_{};
 };
 
 struct collapse_short_edges_fn {
     /// Collapses edges shorter than `threshold` into their middle until none is left that may be, the shortest
     /// first; a closed manifold stays one, of the same genus. A triangle goes with its short side; a flat one whose
     /// sides are all long stays: nothing near it is small, it counts for no curvature, and to remove it would take a
-    /// vertex of its neighbours'. O(faces) per pass, about log(edges to collapse) passes.
+    /// vertex of its neighbours'. O(faces) per pass, about log(edges to collapse) passes and at most 64.
     /// \throws invalid_input  `bad_parameter` for a threshold that is negative or not finite, and as
     ///         `triangle_surface::validate`.
     collapse_report operator()(triangle_surface& surface, double threshold) const {
@@ -167,7 +207,9 @@ struct collapse_short_edges_fn {
         std::vector<std::uint32_t> survivor(surface.positions.size());
         for (std::size_t v = 0; v < survivor.size(); ++v) survivor[v] = static_cast<std::uint32_t>(v);
         edge_collapser collapser(surface, threshold, known);
-        while (std::size_t const done = collapser.pass(survivor)) {
+        for (int pass = 0; pass < most_passes; ++pass) {
+            std::size_t const done = collapser.pass(survivor);
+            if (done == 0) break;
             report.collapsed += done;
             // Triangles of a collapsed edge are gone at once, so that the next pass does not see them.
             for (auto& t : surface.triangles) {
@@ -179,6 +221,8 @@ struct collapse_short_edges_fn {
     }
 
 private:
+    static constexpr int most_passes = 64;  ///< more are only needed where most short edges meet at one vertex
+
     static void renumber(triangle_surface& surface, std::span<std::uint32_t> survivor, collapse_report& report) {
         std::size_t const n = surface.positions.size();
         report.new_vertex.resize(n);

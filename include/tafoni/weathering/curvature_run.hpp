@@ -13,13 +13,13 @@
 #include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
 #include <tafoni/weathering/detail/door_scale.hpp>
+#include <tafoni/weathering/detail/edge_lengths.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -231,7 +231,7 @@ private:
             normal_.resize(n);
             vertex_normals(view(), normal_, threads);
         }
-        if (!(mean_edge_ >= 0)) mean_edge_ = measure(surface_.positions, threads).mean;
+        if (!(mean_edge_ >= 0)) mean_edge_ = detail::measure_edges(surface_.positions, rings_, threads).mean;
         double const reach = mean_edge_ * report_.step;
         double const power = options_.power;
         threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
@@ -263,7 +263,7 @@ private:
         });
         bool const any = std::any_of(moved_.begin(), moved_.end(), [](double d) { return d > 0; });
         if (!any) return false;
-        edge_lengths const edges = measure(next_, threads);
+        detail::edge_lengths const edges = detail::measure_edges(next_, rings_, threads);
         if (options_.topology == mesh_topology::adapt && edges.shortest < options_.small_edge * edges.mean &&
             thin_out(edges)) {
             return true;
@@ -280,49 +280,13 @@ private:
         return true;
     }
 
-    struct edge_lengths {
-        double mean = 0;
-        double shortest = std::numeric_limits<double>::infinity();
-    };
-    /// Blocks of one size, so that the sum does not depend on threads.
-    template <executor Executor>
-    [[nodiscard]] edge_lengths measure(std::span<vec3 const> positions, Executor const& threads) const {
-        struct edge_sum {
-            double sum = 0;
-            std::size_t edges = 0;
-            double least = std::numeric_limits<double>::infinity();
-        };
-        std::size_t const n = positions.size();
-        std::vector<edge_sum> parts((n + detail::vertex_grain - 1) / detail::vertex_grain);
-        threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
-            edge_sum p;
-            for (std::size_t v = begin; v < end; ++v) {
-                vec3 const at = positions[v];
-                for (std::uint32_t const w : rings_.neighbors(v)) {
-                    if (w < v) continue;
-                    double const l = length(positions[w] - at);
-                    p.sum += l;
-                    p.least = std::min(p.least, l);
-                    ++p.edges;
-                }
-            }
-            parts[begin / detail::vertex_grain] = p;
-        });
-        edge_sum all;
-        for (edge_sum const& p : parts) {
-            all.sum += p.sum;
-            all.edges += p.edges;
-            all.least = std::min(all.least, p.least);
-        }
-        return {all.edges > 0 ? all.sum / static_cast<double>(all.edges) : 0.0, all.least};
-    }
-
     /// Finishes an iteration without the edges that have become too short; false where none can go. All or nothing.
-    [[nodiscard]] bool thin_out(edge_lengths const& edges) {
+    [[nodiscard]] bool thin_out(detail::edge_lengths const& edges) {
+        double const limit = options_.small_edge * edges.mean;
+        if (!detail::any_may_collapse(edges, limit, next_, surface_.triangles, rings_)) return false;
         detail::curvature_state s = snapshot();
         s.surface.positions = next_;
-        collapse_report const gone =
-            detail::collapse_short_edges_fn::trusted(s.surface, options_.small_edge * edges.mean, &rings_);
+        collapse_report const gone = detail::collapse_short_edges_fn::trusted(s.surface, limit, &rings_);
         if (gone.collapsed == 0) return false;
         std::size_t const n = s.surface.positions.size();
         s.wear.assign(n, 0.0);

@@ -3,15 +3,16 @@
 #ifndef TAFONI_CURVATURE_DETAIL_CORNER_SUMS_HPP
 #define TAFONI_CURVATURE_DETAIL_CORNER_SUMS_HPP
 
+#include <tafoni/core/error.hpp>
 #include <tafoni/curvature/concepts.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tafoni::detail {
@@ -19,11 +20,28 @@ namespace tafoni::detail {
 inline constexpr std::size_t face_grain = 4096;
 inline constexpr std::size_t vertex_grain = 2048;
 
+/// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for rings of no or
+///         another mesh.
+inline void require_one_per_vertex(char const* who, surface_view const& s, std::size_t numbers) {
+    std::size_t const vertices = s.positions.size();
+    if (numbers != vertices) {
+        fail<invalid_input>(errc::attribute_length,
+                            std::string(who) + ": got " + std::to_string(numbers) + " numbers for " + std::to_string(vertices) +
+                                " vertices",
+                            {.kind = entity::attribute, .value = static_cast<double>(numbers),
+                             .limit = static_cast<double>(vertices)});
+    }
+    if (s.rings == nullptr || s.rings->vertex_count() != vertices) {
+        fail<invalid_input>(errc::bad_parameter, std::string(who) + ": the rings are not those of the surface",
+                            {.kind = entity::parameter});
+    }
+}
+
 /// `finish(v, sum)` for every vertex, with the sum over the corners at v, by ascending face, of what a face gives.
 ///
-/// `source.face(f)` has `Sum corner(k)`, zeros for a triangle without area, and `part()`, what is kept of it in
-/// between; `source.face(f, part)` gives it again. One thread adds corners as the faces come, in `sums` (one entry per
-/// vertex; of several threads none); several keep the parts and gather: the same additions in the same order. O(faces).
+/// `source.of(f)` and `source.of(f, g)`, of two triangles side by side, have `corner(k, which)`, what is added to a `Sum`
+/// (zeros for a triangle without area), and `part(which)`, what is kept of it in between; `source.of(f, part)` gives it again. One thread adds corners as the faces come, in `sums` (one entry per vertex; of several threads none);
+/// several keep the parts and gather: the same additions in the same order. O(faces).
 template <class Sum, class Source, executor E, class Finish>
 void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Source const& source, E const& executor,
                  Finish const& finish) {
@@ -31,22 +49,33 @@ void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, So
     std::size_t const vertices = s.positions.size();
     if (executor.thread_count() <= 1) {
         std::fill(sums.begin(), sums.end(), zero);
-        for (std::size_t f = 0; f < faces; ++f) {
-            auto const face = source.face(f);
-            for (std::size_t k = 0; k < 3; ++k) sums[s.triangles[f][k]] += face.corner(k);
+        for (std::size_t f = 0; f + 1 < faces; f += 2) {
+            auto const two = source.of(f, f + 1);
+            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[f][k]], two.corner(k, 0));
+            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[f + 1][k]], two.corner(k, 1));
+        }
+        if (faces % 2 == 1) {
+            auto const last = source.of(faces - 1);
+            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[faces - 1][k]], last.corner(k, 0));
         }
         for (std::size_t v = 0; v < vertices; ++v) finish(v, sums[v]);
         return;
     }
     // Not initialised: the threads that write the parts first also have their pages made.
-    auto const parts = std::make_unique_for_overwrite<decltype(source.face(0).part())[]>(faces);
+    auto const parts = std::make_unique_for_overwrite<decltype(source.of(faces).part(faces))[]>(faces);
     executor.for_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) parts[f] = source.face(f).part();
+        std::size_t f = begin;
+        for (; f + 1 < end; f += 2) {
+            auto const two = source.of(f, f + 1);
+            parts[f] = two.part(0);
+            parts[f + 1] = two.part(1);
+        }
+        if (f < end) parts[f] = source.of(f).part(0);
     });
     executor.for_blocks(vertices, vertex_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             Sum sum = zero;
-            for (auto const& c : s.rings->faces(v)) sum += source.face(c.face, parts[c.face]).corner(c.place);
+            for (auto const& c : s.rings->faces(v)) add_to(sum, source.of(c.face, parts[c.face]).corner(c.place, 0));
             finish(v, sum);
         }
     });
@@ -79,49 +108,6 @@ void fill_border(surface_view const& s, std::span<double> mean, E const& executo
         }
     });
 }
-
-/// The sides of a triangle from corner 0 and what of them is not zero beyond rounding.
-struct triangle_sides {
-    vec3 a{0, 0, 0};    ///< corner 1 less corner 0
-    vec3 b{0, 0, 0};    ///< corner 2 less corner 0
-    double aa = 0;
-    double bb = 0;
-    double ab = 0;      ///< their products
-    double det = 0;     ///< (2 area)^2
-    /// Three different corners, the angle between a and b is no less than about 1e-10, and the sides are no shorter
-    /// than about 1e-70: weights by 1 / side^4 are finite.
-    bool valid = false;
-
-    triangle_sides() = default;
-    triangle_sides(surface_view const& s, std::size_t f) noexcept {
-        auto const& t = s.triangles[f];
-        vec3 const& p = s.positions[t[0]];
-        a = vec3{s.positions[t[1]] - p};
-        b = vec3{s.positions[t[2]] - p};
-        aa = dot(a, a);
-        bb = dot(b, b);
-        ab = dot(a, b);
-        det = squared_length(cross(a, b));
-        valid = aa * bb > 1e-280 && det > 1e-20 * (aa * bb) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-    }
-    /// Squared side opposite to corner 0.
-    [[nodiscard]] double cc() const noexcept { return squared_length(b - a); }
-
-    /// Parts of the area that belong to the three corners: Voronoi regions, or by halves and quarters where the
-    /// triangle is obtuse, so that they add up to the area [Meyer et al. 2003, section 3.3].
-    [[nodiscard]] std::array<double, 3> corner_areas() const noexcept {
-        double const at_0 = ab;       // |a| |b| cos of the angle at corner 0
-        double const at_1 = aa - ab;
-        double const at_2 = bb - ab;
-        double const area2 = std::sqrt(det);
-        if (at_0 < 0) return {area2 / 4, area2 / 8, area2 / 8};
-        if (at_1 < 0) return {area2 / 8, area2 / 4, area2 / 8};
-        if (at_2 < 0) return {area2 / 8, area2 / 8, area2 / 4};
-        double const unit = 0.125 / area2;
-        double const c = aa - ab + (bb - ab);
-        return {unit * (aa * at_2 + bb * at_1), unit * (aa * at_2 + c * at_0), unit * (bb * at_1 + c * at_0)};
-    }
-};
 
 }  // namespace tafoni::detail
 
