@@ -70,6 +70,58 @@ TEST_CASE("contacts are those that looking at every face finds") {
     }
 }
 
+TEST_CASE("faces of all sizes are found, and after small and large moves too") {
+    // A coarse bowl, a fine patch in it, a needle and a speck.
+    triangle_surface s = parametric(
+                             7, 7, false, false, 0,
+                             [](double u, double v) { return vec3{8 * u, 8 * v, 2 * (u - 0.5) * (u - 0.5) + (v - 0.5)}; },
+                             [](double, double) { return 0.0; })
+                             .mesh;
+    triangle_surface const fine = torus_surface(30, 20, 0.2).mesh;
+    auto const first = static_cast<std::uint32_t>(s.positions.size());
+    for (vec3 const& p : fine.positions) s.positions.push_back(vec3{3 + 0.5 * p[0], 4 + 0.5 * p[1], 0.4 + 0.5 * p[2]});
+    for (auto const& t : fine.triangles) s.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    auto const next = static_cast<std::uint32_t>(s.positions.size());
+    for (vec3 const& p : {vec3{0, 0, 0}, vec3{8, 8, 3}, vec3{8, 8.01, 3}, vec3{5, 1, 1}, vec3{5.001, 1, 1}, vec3{5, 1.001, 1}}) s.positions.push_back(p);
+    s.triangles.push_back({next, next + 1, next + 2});
+    s.triangles.push_back({next + 3, next + 4, next + 5});
+    stream random(17, 0, 0);
+    for (double const reach : {0.03, 0.25, 1.0}) {
+        triangle_surface now = s;
+        mesh_boundary walls(now.positions, now.triangles, reach);
+        for (double const move : {0.0, 0.02, 0.1, 2.0}) {
+            for (vec3& p : now.positions) {
+                for (int a = 0; a < 3; ++a) p[a] += random.uniform(-move, move) * reach;
+            }
+            walls.refit(now.positions, now.triangles);
+            std::size_t touching = 0;
+            for (int k = 0; k < 60; ++k) {
+                double const x = random.uniform(-0.5, 8.5);
+                double const y = random.uniform(-0.5, 8.5);
+                double const z = random.uniform(-1, 2);
+                vec3 p{x, y, z};
+                auto const& t = now.triangles[random.index_below(now.triangles.size())];
+                if (k % 3 != 0) p = now.positions[t[0]] + vec3{0.3 * reach * (x - 4), 0.3 * reach * (y - 4), reach * z};
+                auto const expected = brute_force(now, p, reach);
+                std::vector<boundary_contact> found;
+                walls.for_each_contact(p, reach, [&](boundary_contact const& c) { found.push_back(c); });
+                REQUIRE(found.size() == expected.size());
+                touching += found.empty() ? 0U : 1U;
+                if (!found.empty()) CHECK(walls.block_of(p) != 0);
+                CHECK(walls.block_of(p) < walls.block_count());
+                for (std::size_t i = 0; i < found.size(); ++i) {
+                    // Of two faces that are equally near with an edge the point may be before one and behind the other.
+                    bool const over = length(expected[i].normal) > 0;
+                    CHECK(std::fabs(found[i].distance) == Approx(std::fabs(expected[i].distance)).margin(1e-9));
+                    if (over) CHECK(found[i].face == expected[i].face);
+                    if (over) CHECK(dot(found[i].normal, expected[i].normal) == Approx(1));
+                }
+            }
+            CHECK(touching > 10);
+        }
+    }
+}
+
 TEST_CASE("after a refit contacts follow the vertices") {
     triangle_surface s = torus_surface(20, 12, 0).mesh;
     mesh_boundary walls(s.positions, s.triangles, 0.1);

@@ -13,13 +13,15 @@
 namespace tafoni::detail {
 
 /// Particles by the block of the walls that they are in, then by number; as they are numbered where the walls name no
-/// blocks. Answers do not depend on it, the time does: a cell's faces stay in the cache. Keeps its memory.
+/// blocks; what is in block 0 touches nothing. Answers do not depend on it, the time does: a cell's faces stay in the
+/// cache. Keeps its memory.
 class visit_order {
 public:
     /// O(n + blocks).
     template <class Walls, class Position>
     void sort(Walls const& walls, std::size_t n, Position const& position) {
         order_.resize(n);
+        away_ = 0;
         if constexpr (requires(vec3 const& p) { walls.block_of(p); }) {
             block_.resize(n);
             begin_.assign(walls.block_count() + 1, 0);
@@ -27,6 +29,7 @@ public:
                 block_[i] = static_cast<std::uint32_t>(walls.block_of(position(i)));
                 ++begin_[block_[i]];
             }
+            away_ = begin_[0];
             std::uint32_t total = 0;
             for (std::uint32_t& b : begin_) {
                 std::uint32_t const here = b;
@@ -38,9 +41,12 @@ public:
             std::iota(order_.begin(), order_.end(), std::uint32_t{0});
         }
     }
+    /// How many there are before the first that may touch the walls.
+    [[nodiscard]] std::size_t away() const noexcept { return away_; }
     [[nodiscard]] std::size_t operator[](std::size_t k) const noexcept { return order_[k]; }
 
 private:
+    std::size_t away_ = 0;
     std::vector<std::uint32_t> order_{};
     std::vector<std::uint32_t> block_{};
     std::vector<std::uint32_t> begin_{};
