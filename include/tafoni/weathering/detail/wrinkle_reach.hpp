@@ -8,7 +8,7 @@
 #include <tafoni/geometry/vertex_rings.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,51 +28,38 @@ struct reached_vertex {
     return length(vec3{e[0] - t * d[0], e[1] - t * d[1], e[2] - t * d[2]});
 }
 
-/// Vertices nearer than `radius` to the path that hang together with it through such vertices, ascending: the other
-/// side of a thin wall stays as it is. O(vertices of the region x path vertices near them).
+/// Vertices nearer than `radius` to an edge of the path that hang together with that edge through such vertices,
+/// ascending, with the least such distance: the other side of a thin wall stays as it is, and where a path turns back
+/// or crosses itself the nearer part counts. A path of one vertex is a point.
+/// O(vertices + sum over the path's edges of the vertices near it).
 [[nodiscard]] inline std::vector<reached_vertex> reach_of_path(triangle_surface const& s, vertex_rings const& rings,
                                                                std::span<vertex_index const> path, double radius) {
-    // Sections of the path within a ball of two radii about a vertex are found by the length along the path.
     std::vector<reached_vertex> found;
-    std::vector<std::uint32_t> nearest(s.positions.size(), vertex_index::none);  // place on the path
-    std::vector<double> distance(s.positions.size(), -1);
-    auto const measure = [&](std::uint32_t v, std::size_t from) {
-        // Down the path from the neighbour's place in both directions, as long as it comes nearer or may.
-        double best = length(s.positions[v] - s.positions[path[from].value]);
-        std::size_t place = from;
-        auto const look = [&](std::size_t k) {
-            double const d = k + 1 < path.size()
-                                 ? distance_to_segment(s.positions[v], s.positions[path[k].value], s.positions[path[k + 1].value])
-                                 : length(s.positions[v] - s.positions[path[k].value]);
-            if (d < best) {
-                best = d;
-                place = k;
-            }
-            return d <= best + radius;
-        };
-        for (std::size_t k = from; k < path.size() && look(k); ++k) {}
-        for (std::size_t k = from; k-- > 0 && look(k);) {}
-        distance[v] = best;
-        nearest[v] = static_cast<std::uint32_t>(place);
-    };
+    std::vector<double> least(s.positions.size(), -1);
+    std::vector<std::uint32_t> last(s.positions.size(), vertex_index::none);  // edge of the path that it was asked about
     std::vector<std::uint32_t> front;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-        std::uint32_t const v = path[k].value;
-        if (distance[v] >= 0) continue;
-        distance[v] = 0;
-        nearest[v] = static_cast<std::uint32_t>(k);
-        front.push_back(v);
-    }
-    for (std::size_t k = 0; k < front.size(); ++k) {
-        std::uint32_t const v = front[k];
-        found.push_back({v, distance[v]});
-        for (std::uint32_t const w : rings.neighbors(v)) {
-            if (distance[w] >= 0) continue;
-            measure(w, nearest[v]);
-            if (distance[w] < radius) front.push_back(w);
+    std::size_t const edges = path.size() > 1 ? path.size() - 1 : path.size();
+    for (std::size_t e = 0; e < edges; ++e) {
+        std::uint32_t const a = path[e].value;
+        std::uint32_t const b = path[std::min(e + 1, path.size() - 1)].value;
+        front.clear();
+        auto const ask = [&](std::uint32_t v) {
+            if (last[v] == e) return;
+            last[v] = static_cast<std::uint32_t>(e);
+            double const d = distance_to_segment(s.positions[v], s.positions[a], s.positions[b]);
+            if (!(d < radius)) return;
+            front.push_back(v);
+            if (least[v] < 0) found.push_back({.vertex = v});
+            if (least[v] < 0 || d < least[v]) least[v] = d;
+        };
+        ask(a);
+        ask(b);
+        for (std::size_t k = 0; k < front.size(); ++k) {
+            for (std::uint32_t const w : rings.neighbors(front[k])) ask(w);
         }
     }
-    std::sort(found.begin(), found.end(), [](reached_vertex const& a, reached_vertex const& b) { return a.vertex < b.vertex; });
+    for (reached_vertex& f : found) f.distance = least[f.vertex];
+    std::sort(found.begin(), found.end(), [](reached_vertex const& x, reached_vertex const& y) { return x.vertex < y.vertex; });
     return found;
 }
 
