@@ -10,7 +10,7 @@ namespace weather {
 CLI::App* add_curvature_command(CLI::App& app, curvature_arguments& a) {
     CLI::App* const c = app.add_subcommand("curvature", "Weathering of a mesh by its mean curvature: what sticks out goes first");
     c->footer(std::string(mesh_footer) + field_footer + result_footer +
-              "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (a checkpoint is written).");
+              "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (a checkpoint is written, see --checkpoint).");
     add_mesh_input(*c, a);
     c->add_option("--iterations", a.iterations, "in all, those before --resume included")->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62))->capture_default_str();
     c->add_option("--power", a.power, "of the curvature: larger spares what is flat")->check(between(1.0, 100.0))->capture_default_str();
@@ -27,7 +27,7 @@ CLI::App* add_curvature_command(CLI::App& app, curvature_arguments& a) {
     add_up(*c, a.up);
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
-    c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end");
+    c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/curvature.checkpoint");
     c->add_option("--resume", a.resume, "checkpoint to go on from");
     return c;
 }

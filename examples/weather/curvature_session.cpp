@@ -43,6 +43,7 @@ bool curvature_session::run() {
     stopwatch watch;
     progress_.context().tick("read", 0);
     input_ = load_surface(a_.input, a_.seed);
+    tell_repairs(input_);
     progress_.context().tick("read", 1);
     seconds_["read"] = watch.lap();
     durability_ = make_field("--durability", a_.durability, least_durability, 1e9,

@@ -44,6 +44,17 @@ std::string load_bytes(std::string const& path) {
     return std::string(file.bytes());
 }
 
+tafoni::mesh_file read_model(std::string const& path, char const* others) {
+    try {
+        return tafoni::read_mesh(std::filesystem::path(path));
+    } catch (tafoni::io_error const& e) {
+        if (e.code() != tafoni::errc::wrong_format || is_mesh_name(path)) throw;
+    }
+    tafoni::detail::fail<tafoni::io_error>(tafoni::errc::wrong_format,
+                                           path + ": expected a mesh (.obj .ply .stl), " + others,
+                                           {.kind = tafoni::entity::file, .file = path});
+}
+
 rock_input load_rock(std::string const& name, std::uint64_t seed) {
     if (name.rfind("builtin:", 0) == 0) return load_builtin(name, seed);
     if (extension_of(name) == "asc") {
@@ -51,7 +62,7 @@ rock_input load_rock(std::string const& name, std::uint64_t seed) {
                 .terrain = true,
                 .repaired = {{"turned_faces", 0}}};
     }
-    tafoni::mesh_file const file = tafoni::read_mesh(std::filesystem::path(name));
+    tafoni::mesh_file const file = read_model(name, "an elevation grid (.asc) or builtin:SPEC");
     tafoni::repaired_solid r = tafoni::repair_solid(file.mesh, {.orient = true});
     return {.body = std::move(r.body), .repaired = {{"turned_faces", r.report.turned_faces.size()}}};
 }

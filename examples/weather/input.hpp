@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tafoni/geometry/solid.hpp>
+#include <tafoni/io/read_mesh.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +20,10 @@ struct rock_input {
 /// Reads .obj, .ply, .stl or .asc, or makes `builtin:outcrop[:resolution=40]`. Orientation is mended on
 /// request of the tool; anything else that is wrong is an error of the library.
 rock_input load_rock(std::string const& name, std::uint64_t seed);
+
+/// Reads a mesh. Where neither its bytes nor its name say which kind of file it is, all kinds that INPUT may be are named:
+/// `others` ends the list. \throws tafoni::io_error
+tafoni::mesh_file read_model(std::string const& path, char const* others);
 
 /// Points of a file: the vertices of a mesh, or lines of three numbers.
 std::vector<tafoni::vec3> load_points(std::string const& path);

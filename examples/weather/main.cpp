@@ -15,12 +15,20 @@
 
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 namespace {
 
 constexpr int exit_bad_input = 1;
 constexpr int exit_usage = 2;
 constexpr int exit_interrupted = 130;
+
+/// What the tool's own files are refused with begins with its name already.
+void tell(std::string_view what) {
+    constexpr std::string_view own = "weather: ";
+    if (what.substr(0, own.size()) == own) what.remove_prefix(own.size());
+    std::fprintf(stderr, "weather: %.*s\n", static_cast<int>(what.size()), what.data());
+}
 
 }  // namespace
 
@@ -52,13 +60,13 @@ int main(int argc, char** argv) {
         if (hydraulic_command->parsed()) return weather::run_hydraulic(hydraulic) ? 0 : exit_interrupted;
         if (wrinkles_command->parsed()) return weather::run_wrinkles(wrinkles) ? 0 : exit_interrupted;
     } catch (weather::usage_error const& e) {
-        std::fprintf(stderr, "weather: %s\n", e.what());
+        tell(e.what());
         return exit_usage;
     } catch (tafoni::cancelled const&) {
         std::fprintf(stderr, "weather: stopped before the work began; nothing was written\n");
         return exit_interrupted;
     } catch (std::exception const& e) {
-        std::fprintf(stderr, "weather: %s\n", e.what());
+        tell(e.what());
         return exit_bad_input;
     }
     return 0;

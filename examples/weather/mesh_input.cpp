@@ -61,7 +61,7 @@ mesh_input load_surface(std::string const& name, std::uint64_t seed) {
         mesh = terrain_surface(name);
         out.terrain = true;
     } else {
-        mesh = read_mesh(std::filesystem::path(name)).mesh;
+        mesh = read_model(name, "an elevation grid (.asc) or builtin:SPEC").mesh;
     }
     inspect_report look = inspect_mesh(mesh);
     std::size_t const degenerate = look.degenerate_faces;

@@ -24,14 +24,14 @@ inline constexpr char const* result_footer =
 template <class Arguments>
 void add_mesh_input(CLI::App& c, Arguments& a) {
     c.add_option("INPUT", a.input, "mesh (.obj .ply .stl), open or closed, elevation grid (.asc), or builtin:SPEC")->required();
-    c.add_option("-o,--output", a.output, "folder for the results")->required();
+    c.add_option("-o,--output", a.output, "folder DIR for the results")->required();
 }
 
 template <class Arguments>
 void add_mesh_run(CLI::App& c, Arguments& a) {
     c.add_option("--seed", a.seed, "of everything that is drawn")->capture_default_str();
     c.add_option("--threads", a.threads, "0: as many as the machine has")->check(CLI::Range(std::size_t{0}, std::size_t{1024}))->capture_default_str();
-    c.add_option("--format", a.formats, "obj,ply,stl,vtp")->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
+    c.add_option("--format", a.formats, "obj,ply,stl,vtp")->allow_extra_args(false)->delimiter(',')->check(CLI::IsMember({"obj", "ply", "stl", "vtp"}))->capture_default_str();
     c.add_option("--progress", a.progress, "bar, json or none; default: bar on a terminal")->check(CLI::IsMember({"bar", "json", "none", "auto"}));
 }
 

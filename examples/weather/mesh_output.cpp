@@ -2,12 +2,19 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
 namespace weather {
 
 using namespace tafoni;
+
+void tell_repairs(mesh_input const& input) {
+    for (auto const& [what, count] : input.repaired.items()) {
+        if (count != 0) std::fprintf(stderr, "repaired: %s %s\n", count.dump().c_str(), what.c_str());
+    }
+}
 
 surface_mesh mesh_with(triangle_surface const& surface, std::vector<mesh_channel> channels) {
     surface_mesh out;

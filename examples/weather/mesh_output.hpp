@@ -12,6 +12,9 @@
 
 namespace weather {
 
+/// What was mended, on stderr.
+void tell_repairs(mesh_input const& input);
+
 /// The triangles with these numbers per vertex.
 surface_mesh mesh_with(tafoni::triangle_surface const& surface, std::vector<tafoni::mesh_channel> channels);
 

@@ -19,4 +19,9 @@ inline CLI::Validator between(double lo, double hi) {
         range);
 }
 
+/// Refuses a text that says nothing.
+inline CLI::Validator filled() {
+    return CLI::Validator([](std::string& text) { return text.empty() ? std::string("it is empty") : std::string(); }, "");
+}
+
 }  // namespace weather

@@ -21,12 +21,19 @@ namespace {
 
 constexpr double most = 1e9;
 
+void require_durable(spec const& s, std::vector<double> const& values) {
+    for (double const v : values) {
+        if (!(v >= 0 && v <= most)) s.fail("values: a durability lies in [0, 1e9]");
+    }
+}
+
 /// Corners of a curve over shares of the height.
 std::vector<durability_point> corners_of(spec& s) {
     auto const at = s.list("at", {0, 1});
     auto const values = s.list("values", std::vector<double>(at.size(), 0.01));
     if (at.empty() || values.size() != at.size()) s.fail("values: as many as at are needed");
     std::vector<durability_point> points;
+    require_durable(s, values);
     for (std::size_t k = 0; k < at.size(); ++k) points.push_back({.altitude = at[k], .durability = values[k]});
     auto const spread = [&](char const* key, double durability_point::* member) {
         auto const list = s.list(key, {0});
@@ -41,6 +48,7 @@ std::vector<durability_point> corners_of(spec& s) {
 /// Beds with sharp boundaries; the values repeat from the bottom to the top.
 std::vector<durability_point> beds_of(spec& s) {
     auto const values = s.list("values", {0.006, 0.03});
+    require_durable(s, values);
     double const thickness = s.number("thickness", 1.0 / static_cast<double>(2 * values.size()), 1e-4, 1);
     std::vector<durability_point> points;
     std::size_t k = 0;

@@ -205,7 +205,8 @@ void load_solid(voxel_source& source, voxel_arguments const& a, solid&& body) {
 
 /// A solid; or a surface with holes or with edges of many faces, which is filled by its winding number, and told.
 void load_mesh(voxel_source& source, voxel_arguments const& a) {
-    auto const file = std::make_shared<mesh_file const>(read_mesh(std::filesystem::path(a.input)));
+    auto const file = std::make_shared<mesh_file const>(
+        read_model(a.input, "an elevation grid (.asc), voxels (.vox .nrrd), an image (.png .pgm) or builtin:SPEC"));
     try {
         repaired_solid r = repair_solid(file->mesh, {.orient = true});
         source.repaired["turned_faces"] = r.report.turned_faces.size();
@@ -253,7 +254,7 @@ voxel_source load_voxels(voxel_arguments const& a) {
         load_volume(source, a);
     } else if (kind == "vox") {
         load_vox(source, a);
-    } else if (kind.empty() || !is_mesh_name(a.input)) {
+    } else if (a.input.rfind("builtin:", 0) == 0) {
         rock_input rock = load_rock(a.input, a.seed);
         load_solid(source, a, std::move(rock.body));
     } else {

@@ -4,6 +4,7 @@
 #include "spec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,29 @@
 namespace weather {
 
 using namespace tafoni;
+
+namespace {
+
+/// Those beside a side beyond which the grid knows only air. O(voxels of the sides).
+std::size_t voxels_at_air_sides(sparse_grid const& grid) {
+    std::size_t count = 0;
+    for (std::size_t side = 0; side < 6; ++side) {
+        if (grid.border().sides[side] != border_kind::air) continue;
+        std::size_t const across = side / 2;
+        std::size_t const u = (across + 1) % 3;
+        std::size_t const v = (across + 2) % 3;
+        std::array<std::int32_t, 3> at{};
+        at[across] = side % 2 == 0 ? 0 : static_cast<std::int32_t>(grid.size()[across]) - 1;
+        for (at[u] = 0; at[u] < static_cast<std::int32_t>(grid.size()[u]); ++at[u]) {
+            for (at[v] = 0; at[v] < static_cast<std::int32_t>(grid.size()[v]); ++at[v]) {
+                if (grid.is_solid({at[0], at[1], at[2]})) ++count;
+            }
+        }
+    }
+    return count;
+}
+
+}  // namespace
 
 voxel_session::voxel_session(voxel_arguments const& a)
     : a_(a),
@@ -27,7 +51,6 @@ voxel_session::voxel_session(voxel_arguments const& a)
     static_cast<void>(any_rate::parse(a_.rate));
     static_cast<void>(make_durability(a_.durability, a_.noise, any, box, a_.seed));
     static_cast<void>(parse_joints(a_.joints, box, a_.seed));
-    if (!a_.joints.empty() && !a_.rockfall) throw usage_error("--joints: cut rock for --rockfall only");
 }
 
 bool voxel_session::run() {
@@ -75,6 +98,10 @@ bool voxel_session::run() {
     seconds_["write"] = after + snapshot_seconds_;
     write_report(run);
     voxel_report const r = run.report();
+    if (std::size_t const touching = voxels_at_air_sides(run.grid()); touching + r.voxels_left > 0) {
+        std::fprintf(stderr, "at the sides of the grid: %zu voxels rest there and %llu slid beyond; a larger --margin makes room\n", touching,
+                     static_cast<unsigned long long>(r.voxels_left));
+    }
     std::fprintf(stderr, "%s: %llu steps, %llu of %llu voxels are rock, %llu colluvium, %llu fell in %llu blocks\n",
                  a_.output.c_str(), static_cast<unsigned long long>(r.steps), static_cast<unsigned long long>(r.voxels_rock),
                  static_cast<unsigned long long>(r.voxels_initial), static_cast<unsigned long long>(r.voxels_colluvium),

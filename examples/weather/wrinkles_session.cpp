@@ -1,14 +1,19 @@
 #include "wrinkles_session.hpp"
 
+#include "input.hpp"
 #include "spec.hpp"
 
+#include <tafoni/core/detail/bytes.hpp>
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/version.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <span>
 
 namespace weather {
 
@@ -67,6 +72,21 @@ vertex_index nearest_vertex(triangle_surface const& s, vec3 const& p) {
     return best;
 }
 
+constexpr std::uint64_t checkpoint_magic = 0x6972772D66617400ULL;  // "\0taf-wri"
+
+/// Tells apart what a checkpoint could belong to.
+std::uint64_t pattern_hash(wrinkle_pattern const& pattern, triangle_surface const& base) {
+    detail::number_hash h;
+    for (vec3 const& p : base.positions) {
+        for (int d = 0; d < 3; ++d) h.add(p[d]);
+    }
+    for (auto const& t : pattern.triangles()) {
+        for (std::uint32_t const c : t) h.add(std::uint64_t{c});
+    }
+    for (double const d : pattern.displacement()) h.add(d);
+    return h.value();
+}
+
 }  // namespace
 
 wrinkles_session::wrinkles_session(wrinkles_arguments const& a)
@@ -79,7 +99,7 @@ wrinkles_session::wrinkles_session(wrinkles_arguments const& a)
     }
     for (std::string const& text : a_.through) static_cast<void>(points_of(text));
     static_cast<void>(enlargements());
-    if (a_.strength == 0) a_.strength = a_.profile == "groove" ? -1 : 1;
+    if (std::isnan(a_.strength)) a_.strength = a_.profile == "groove" ? -1 : 1;
 }
 
 std::vector<wrinkle> wrinkles_session::wrinkles(mesh_input const& input) const {
@@ -113,22 +133,31 @@ std::vector<enlargement> wrinkles_session::enlargements() const {
     return out;
 }
 
-surface_mesh wrinkles_session::worn(wrinkle_pattern const& pattern, triangle_surface const& base, std::uint32_t times) {
-    triangle_surface const flat = pattern.wear(base.positions, 0, threads_);
-    triangle_surface const s = pattern.wear(base.positions, times, threads_);
-    std::vector<double> wear(s.positions.size());
-    for (std::size_t v = 0; v < wear.size(); ++v) wear[v] = length(s.positions[v] - flat.positions[v]);
-    return mesh_with(s, {vertex_numbers("curvature", estimate_curvature(s, tensor_fit{}, threads_)), vertex_numbers("wear", std::move(wear)),
-                         vertex_numbers("factor", {pattern.displacement().begin(), pattern.displacement().end()})});
+surface_mesh wrinkles_session::worn(wrinkle_pattern const& pattern, triangle_surface const& flat, triangle_surface const& now) const {
+    std::vector<double> wear(now.positions.size());
+    for (std::size_t v = 0; v < wear.size(); ++v) wear[v] = length(now.positions[v] - flat.positions[v]);
+    return mesh_with(now, {vertex_numbers("curvature", estimate_curvature(now, tensor_fit{}, threads_)), vertex_numbers("wear", std::move(wear)),
+                           vertex_numbers("factor", {pattern.displacement().begin(), pattern.displacement().end()})});
 }
 
 bool wrinkles_session::run() {
     require_makable(a_.output);
+    if (!a_.checkpoint.empty()) {
+        std::filesystem::path const folder = std::filesystem::path(a_.checkpoint).parent_path();
+        require_makable(folder.empty() ? "." : folder.string());
+    }
     stopwatch watch;
     progress_.context().tick("read", 0);
     mesh_input const input = load_surface(a_.input, a_.seed);
+    tell_repairs(input);
     std::vector<mesh_input> others;
-    for (std::string const& name : a_.wear_on) others.push_back(load_surface(name, a_.seed));
+    for (std::string const& name : a_.wear_on) {
+        others.push_back(load_surface(name, a_.seed));
+        if (others.back().surface.triangles != input.surface.triangles) {
+            detail::fail<invalid_input>(errc::bad_parameter, "--wear-on " + name + ": its triangles are not those of " + a_.input,
+                                        {.kind = entity::file, .file = name});
+        }
+    }
     progress_.context().tick("read", 1);
     seconds_["read"] = watch.lap();
     if (a_.radius < 0) a_.radius = input.size / 40;
@@ -138,31 +167,95 @@ bool wrinkles_session::run() {
     wrinkle_pattern const pattern(input.surface, lines, swellings,
                                   {.divisor = a_.divisor, .subdivisions = a_.subdivisions,
                                    .formula = a_.as_printed ? wrinkle_formula::as_printed : wrinkle_formula::scale_free});
-    triangle_surface const result = pattern.wear(input.surface.positions, a_.times, threads_);
-    seconds_["weather"] = watch.lap();
-    stopped_ = progress_.show("weather", 1) == step_control::stop;
-    for (mesh_input const& other : others) {
-        if (other.surface.triangles != input.surface.triangles) {
-            detail::fail<invalid_input>(errc::bad_parameter, "--wear-on: its triangles are not those of " + a_.input, {.kind = entity::parameter});
-        }
+    triangle_surface const flat = pattern.wear(input.surface.positions, 0, threads_);
+    hash_ = pattern_hash(pattern, flat);
+    triangle_surface result = flat;
+    if (!a_.resume.empty()) resume(result);
+    make_folder(input);
+    weather(pattern, flat, result);
+    seconds_["weather"] = watch.lap() - aside_;
+    auto const factor = pattern.displacement();
+    if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) {
+        std::fprintf(stderr, "nothing moves: no vertex lies within --radius %g of a line; more --subdivisions or a larger --radius help\n", a_.radius);
     }
-    // Made only now that the input has been accepted, so that a refused run leaves nothing behind.
-    std::filesystem::path const folder = made_folder(a_.output);
-    vec3 origin{0, 0, 0};
-    for (int k = 0; k < 3; ++k) origin[k] = std::floor(input.bounds.lo[k]);
-    out_ = output_folder(folder, a_.formats, origin);
-    out_.remove_old("wrinkles", [](std::uint64_t) { return false; });
-    out_.write("weathered", worn(pattern, input.surface, a_.times));
+    out_.write("weathered", worn(pattern, flat, result));
     for (std::size_t k = 0; k < others.size() && !stopped_; ++k) {
-        out_.write("worn_" + std::to_string(k), worn(pattern, others[k].surface, a_.times));
+        triangle_surface const before = pattern.wear(others[k].surface.positions, 0, threads_);
+        out_.write("worn_" + std::to_string(k), worn(pattern, before, pattern.wear_again(before, done_, threads_)));
         stopped_ = progress_.show("write", static_cast<double>(k) / static_cast<double>(others.size())) == step_control::stop;
     }
-    seconds_["write"] = watch.lap();
+    std::string checkpoint = a_.checkpoint;
+    if (checkpoint.empty() && stopped_) checkpoint = (out_.folder() / "wrinkles.checkpoint").string();
+    if (!checkpoint.empty()) write_checkpoint(result, checkpoint);
+    if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
+    if (a_.snapshots > 0) series_.finish(out_);
+    seconds_["write"] = watch.lap() + aside_;
     write_report(input, pattern, volume_of(result, input.bounds));
     progress_.show("write", 1);
     std::fprintf(stderr, "%s: %zu wrinkles, %zu vertices added\n", a_.output.c_str(), lines.size(),
                  result.positions.size() - input.surface.positions.size());
     return !stopped_;
+}
+
+void wrinkles_session::make_folder(mesh_input const& input) {
+    // Made only now that the input has been accepted, so that a refused run leaves nothing behind.
+    std::filesystem::path const folder = made_folder(a_.output);
+    vec3 origin{0, 0, 0};
+    for (int k = 0; k < 3; ++k) origin[k] = std::floor(input.bounds.lo[k]);
+    out_ = output_folder(folder, a_.formats, origin);
+    if (a_.snapshots > 0) made_folder((folder / "snapshots").string());
+    out_.remove_old("wrinkles", [&](std::uint64_t n) { return !a_.resume.empty() && n <= done_; });
+}
+
+void wrinkles_session::weather(wrinkle_pattern const& pattern, triangle_surface const& flat, triangle_surface& now) {
+    if (!a_.resume.empty()) series_.recall(out_, a_.snapshots, done_);
+    for (;;) {
+        if (a_.snapshots > 0 && done_ % a_.snapshots == 0) {
+            stopwatch watch;
+            series_.write(out_, done_, worn(pattern, flat, now));
+            if (!a_.checkpoint.empty()) write_checkpoint(now, a_.checkpoint);
+            aside_ += watch.lap();
+        }
+        double const share = a_.times == 0 ? 1 : static_cast<double>(done_) / static_cast<double>(a_.times);
+        bool const asked_to_stop = progress_.show("weather", share, std::to_string(done_) + " times") == step_control::stop;
+        if (done_ >= a_.times) return;
+        stopped_ = asked_to_stop;
+        if (stopped_) return;
+        now = pattern.wear_again(std::move(now), 1, threads_);
+        ++done_;
+    }
+}
+
+void wrinkles_session::write_checkpoint(triangle_surface const& now, std::string const& path) const {
+    detail::byte_writer out;
+    out.put(checkpoint_magic);
+    out.put(hash_);
+    out.put(done_, 4);
+    for (vec3 const& p : now.positions) {
+        for (int d = 0; d < 3; ++d) out.put_real(p[d]);
+    }
+    out.put(detail::byte_hash(out.bytes()));
+    detail::write_file("weather", path, {reinterpret_cast<char const*>(out.bytes().data()), out.bytes().size()});
+}
+
+void wrinkles_session::resume(triangle_surface& now) {
+    std::string const text = load_bytes(a_.resume);
+    auto const bytes = std::as_bytes(std::span(text.data(), text.size()));
+    auto const refuse = [&](errc code, char const* why) {
+        detail::fail<io_error>(code, a_.resume + ": " + why, {.kind = entity::file, .file = a_.resume});
+    };
+    detail::byte_reader in(bytes, "--resume");
+    if (bytes.size() < 28 || in.get() != checkpoint_magic) refuse(errc::wrong_format, "these bytes are no checkpoint of wrinkles");
+    if (in.get() != hash_) refuse(errc::checkpoint_mismatch, "the checkpoint belongs to another mesh or other wrinkles");
+    if (bytes.size() != 28 + 24 * now.positions.size()) refuse(errc::truncated, "the checkpoint has another length");
+    if (detail::byte_reader(bytes.last(8), "--resume").get() != detail::byte_hash(bytes.first(bytes.size() - 8))) {
+        refuse(errc::bad_syntax, "the checksum is wrong");
+    }
+    done_ = static_cast<std::uint32_t>(in.get(4));
+    if (done_ > a_.times) throw usage_error("--times " + std::to_string(a_.times) + ": the checkpoint has " + std::to_string(done_));
+    for (vec3& p : now.positions) {
+        for (int d = 0; d < 3; ++d) p[d] = in.get_real();
+    }
 }
 
 void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern const& pattern, double volume) const {
@@ -180,10 +273,11 @@ void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern con
     j["seed"] = a_.seed;
     j["parameters"] = {{"path", a_.paths}, {"through", a_.through}, {"enlarge", a_.enlargements}, {"radius", a_.radius},
                        {"strength", a_.strength}, {"profile", a_.profile}, {"times", a_.times}, {"divisor", a_.divisor},
-                       {"subdivisions", a_.subdivisions}, {"as_printed", a_.as_printed}, {"wear_on", a_.wear_on}, {"format", a_.formats}};
+                       {"subdivisions", a_.subdivisions}, {"as_printed", a_.as_printed}, {"wear_on", a_.wear_on}, {"snapshots", a_.snapshots}, {"format", a_.formats}};
     j["mesh"] = json_of(input);
     j["bounds"] = {{"lo", json_of(input.bounds.lo)}, {"hi", json_of(input.bounds.hi)}};
     j["threads"] = a_.threads;
+    j["times"] = done_;
     j["stopped"] = stopped_ ? "interrupted" : "finished";
     j["repaired"] = input.repaired;
     j["vertices"] = pattern.displacement().size();

@@ -57,6 +57,8 @@ bad wrinkles enlarge "v,radius,strength" --enlarge 1,2
 bad wrinkles wrinkle_radius radius --path 0,1 --radius -1
 bad wrinkles profile profile --path 0,1 --profile flat
 bad wrinkles divisor divisor --path 0,1 --divisor 0
+bad wrinkles strength strength --path 0,1 --strength nan
+bad wrinkles subdivisions subdivisions --path 0,1 --subdivisions 7
 for process in curvature hydraulic wrinkles; do expect 0 help_$process "$weather" $process --help; done
 
 # bad input: 1, and nothing is made
@@ -73,6 +75,19 @@ for process in curvature hydraulic; do
 done
 expect 1 far_vertex "$weather" wrinkles builtin:cube:squares=3 -o none --path 0,9999
 says far_vertex "vertex 9999"
+echo words > rock.txt
+for process in curvature hydraulic "wrinkles --path 0,1"; do
+    # shellcheck disable=SC2086
+    expect 1 unknown_kind "$weather" $process rock.txt -o none
+    says unknown_kind "rock.txt: expected a mesh (.obj .ply .stl), an elevation grid (.asc) or builtin:SPEC"
+done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 7 0 0\nv 8 0 0\nv 7 1 0\nf 1 2 3\nf 5 6 7\n' > islands.obj
+expect 1 lone_vertex "$weather" wrinkles islands.obj -o none --path 0,3
+says lone_vertex "vertex 3 belongs to no triangle"
+expect 1 lone_centre "$weather" wrinkles islands.obj -o none --enlarge 3,1,1
+says lone_centre "vertex 3 belongs to no triangle"
+expect 1 islands "$weather" wrinkles islands.obj -o none --path 1,5
+says islands "no edges lead from vertex 1 to vertex 5"
 [ ! -e none ] || complain "a refused run made its folder"
 
 # curvature: files, report, equal runs and thread counts
@@ -204,6 +219,44 @@ expect 0 swell "$weather" wrinkles $cube -o swell --enlarge 100,0.3,2 --enlarge 
 expect 0 worn "$weather" wrinkles $cube -o worn --path 0,70 --radius 0.2 --wear-on builtin:sphere:squares=12 --progress none
 [ -s worn/worn_0.obj ] || complain "no other mesh wears the wrinkles"
 expect 1 other_shape "$weather" wrinkles $cube -o none --path 0,70 --wear-on builtin:cube:squares=11
+says other_shape "--wear-on builtin:cube:squares=11: its triangles"
+for channel in curvature wear factor; do grep -q "Name=\"$channel\"" fold/weathered.vtp || complain "wrinkles: weathered.vtp has no $channel"; done
+expect 0 unmoved "$weather" wrinkles $cube -o unmoved --path 0,70 --strength 0 --progress none
+says unmoved "nothing moves"
+expect 0 told "$weather" wrinkles $cube -o told --path 0,70 --progress json
+says told '"stage":"weather"'
+# snapshots, and going on where a run ended
+lines="--path 0,70 --through 0.2,0.2,1,0.8,0.4,1 --radius 0.2 --progress none --format obj,vtp --snapshots 2"
+# shellcheck disable=SC2086
+{
+    expect 0 six "$weather" wrinkles $cube -o six $lines --times 6 --checkpoint six.bin
+    for n in 0 2 4 6; do [ -s six/snapshots/wrinkles_0000000$n.vtp ] || complain "no snapshot after $n times"; done
+    [ "$(grep -c '<DataSet' six/snapshots/wrinkles.pvd)" = 4 ] || complain "the list of snapshots has another length"
+    cmp six/weathered.vtp six/snapshots/wrinkles_00000006.vtp || complain "the last snapshot is not the end"
+    [ "$(number six times)" = 6 ] || complain "the report does not say how many times"
+    expect 0 three "$weather" wrinkles $cube -o gone_on $lines --times 3 --checkpoint three.bin --threads 2
+    expect 0 on_to_six "$weather" wrinkles $cube -o gone_on $lines --times 6 --resume three.bin --checkpoint on.bin
+    same six gone_on
+    cmp six.bin on.bin || complain "a resumed run of wrinkles ends with another checkpoint"
+    expect 1 other_lines "$weather" wrinkles $cube -o none $lines --times 6 --strength 2 --resume three.bin
+    expect 1 other_base "$weather" wrinkles builtin:sphere:squares=12 -o none --path 0,70 --times 6 --resume three.bin
+    expect 2 too_often "$weather" wrinkles $cube -o none $lines --times 2 --resume three.bin
+    head -c 60 three.bin > cut.bin
+    expect 1 cut_short "$weather" wrinkles $cube -o none $lines --times 6 --resume cut.bin
+    { head -c 3000 three.bin; printf x; tail -c +3002 three.bin; } > bent.bin
+    expect 1 bent_bits "$weather" wrinkles $cube -o none $lines --times 6 --resume bent.bin
+    says bent_bits "checksum"
+    expect 1 foreign "$weather" wrinkles $cube -o none $lines --times 6 --resume six/weathered.obj
+    [ ! -e none ] || complain "a refused resume of wrinkles made its folder"
+}
+"$weather" wrinkles builtin:cube:squares=60 -o halted --path 0,700 --times 10000 --divisor 1e9 --format obj --progress json 2> halted.log &
+child=$!
+tries=0
+until grep -q '"weather"' halted.log 2> /dev/null || [ $tries -gt 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+kill -INT $child
+wait $child
+[ $? -eq 130 ] || { complain "Ctrl-C of wrinkles: another exit code"; tail -3 halted.log; }
+[ -s halted/wrinkles.checkpoint ] || complain "Ctrl-C of wrinkles wrote no checkpoint"
 
 # every kind of input: open, inside out, polygons, corners twice, vertices without faces, terrain with gaps
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n' > inside_out.obj

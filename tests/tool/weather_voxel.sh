@@ -31,17 +31,23 @@ bad mixture "radii: one for each" --bubble mixture:shapes=sphere,disc,radii=1,2,
 bad rate "--rate sine" --rate sine
 bad rate_key "unknown key 'colour'" --rate cubic:colour=3
 bad schedule "--schedule 3x" --schedule 3x
+bad no_schedule "--schedule: it is empty" --schedule ""
 bad schedule_count "--schedule 2s,c" --schedule 2s,c
 bad spheroidal spheroidal --spheroidal -1
 bad cavernous cavernous --cavernous -1
 bad durability "--durability nosuch" --durability nosuch
 bad negative "value: -1 is not in" --durability constant:value=-1
+bad negative_profile "values: a durability lies in" --durability profile:values=1,-1
+bad negative_layers "values: a durability lies in" --durability layers:values=-1
 bad profile "values: as many as at" --durability profile:at=0,1,values=1
 bad noise "--noise cloud" --noise cloud
 bad repose repose --repose 95
 bad baseline baseline --baseline 0
 bad joints "--joints brick" --rockfall --joints brick
-bad joints_alone "for --rockfall only" --joints planes
+bad joints_alone "--joints requires --rockfall" --joints planes
+bad repose_alone "--repose requires --colluvium" --repose 30
+bad baseline_alone "--baseline requires --colluvium" --baseline 2
+bad friction_alone "--friction requires --rockfall" --friction 20
 bad friction friction --friction 90
 bad up up --up w
 bad border border --border sea
@@ -56,6 +62,14 @@ expect 1 below_a_file "$weather" voxel builtin:cube -o plain_file/out
 says below_a_file "cannot be made a folder"
 expect 1 missing "$weather" voxel no_such_file.obj -o none
 says missing no_such_file.obj
+echo words > rock.txt
+expect 1 unknown_kind "$weather" voxel rock.txt -o none
+says unknown_kind "rock.txt: expected a mesh (.obj .ply .stl), an elevation grid (.asc), voxels (.vox .nrrd), an image"
+expect 1 no_checkpoint "$weather" voxel builtin:cube -o none --resume no_such_file
+says no_checkpoint "^weather: no_such_file"
+expect 0 at_the_side "$weather" voxel builtin:cube -o at_the_side --resolution 12 --steps 4 --radius 2 --colluvium --margin 0 --progress none
+says at_the_side "a larger --margin"
+says help "DIR/voxel.checkpoint"
 printf '0 0.01\n1 x\n' > bad.txt
 expect 1 bad_file "$weather" voxel builtin:cube -o none --durability bad.txt
 says bad_file "bad.txt:2:3"
