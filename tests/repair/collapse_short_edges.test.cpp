@@ -1,4 +1,4 @@
-#include "support/curved_surfaces.hpp"
+#include "support/odd_meshes.hpp"
 
 #include <tafoni/geometry/self_intersections.hpp>
 #include <tafoni/repair/collapse_short_edges.hpp>
@@ -137,4 +137,64 @@ TEST_CASE("points that coincide are collapsed without a number that is not one")
     collapse_short_edges(s, 1e-9);
     for (vec3 const& p : s.positions) CHECK(is_finite(p));
     CHECK(open_edges(s) == 0);
+}
+
+TEST_CASE("M18: short edges around a vertex of a hundred thousand triangles go in a moment") {
+    for (bool const closed : {true, false}) {
+        triangle_surface s = hub(100000, 0.5, closed);
+        std::size_t const before = s.positions.size();
+        collapse_report const r = collapse_short_edges(s, 0.01);
+        CHECK(r.collapsed > 90000);
+        CHECK(s.positions.size() + r.collapsed == before);
+        if (closed) CHECK(open_edges(s) == 0);
+        CHECK(shortest_edge(s) >= 0.01);
+        CHECK(length(s.positions[0] - vec3{0, 0, 0.5}) == 0);
+    }
+}
+
+TEST_CASE("M18: a spike of a thousand short spokes shrinks into its hub, which stays where it is") {
+    triangle_surface s = hub(1000, 0.5, true);
+    for (vec3& p : s.positions) p[2] *= p[2] > 0 ? 1 : 40;  // the lower hub far away
+    for (std::size_t v = 1; v <= 1000; ++v) s.positions[v] *= 1e-3;
+    s.positions[0] = vec3{0, 0, 1e-3};
+    collapse_short_edges(s, 0.01);
+    for (vec3 const& p : s.positions) CHECK(is_finite(p));
+    CHECK(s.positions.size() < 20);
+    CHECK(open_edges(s) == 0);
+}
+
+TEST_CASE("M4, M5, M14, M15: sheets that touch, cut or hold each other are thinned out each for itself") {
+    for (odd_mesh const& odd : odd_meshes()) {
+        CAPTURE(odd.name);
+        triangle_surface s = odd.mesh;
+        for (std::size_t v = 0; v < s.positions.size(); ++v) s.positions[v] *= 1 + 1e-3 * static_cast<double>(v % 7);
+        double const threshold = 1.02 * shortest_edge(s);
+        collapse_report const r = collapse_short_edges(s, threshold);
+        CHECK(r.collapsed > 0);
+        for (vec3 const& p : s.positions) REQUIRE(is_finite(p));
+        // Every sheet stays closed: no edge is left with an odd number of triangles.
+        std::map<std::array<std::uint32_t, 2>, int> sides;
+        for (auto const& t : s.triangles) {
+            for (std::size_t k = 0; k < 3; ++k) ++sides[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
+        }
+        for (auto const& [e, n] : sides) REQUIRE(n % 2 == 0);
+        for (std::size_t f = 0; f < odd.mesh.triangles.size(); ++f) {
+            if (!r.new_face[f].valid()) continue;
+            for (std::size_t k = 0; k < 3; ++k) {
+                REQUIRE(s.triangles[r.new_face[f].value][k] == r.new_vertex[odd.mesh.triangles[f][k]].value);
+            }
+        }
+    }
+}
+
+TEST_CASE("a collapse meets in the middle of its edge, where both ends are inside or both on the border") {
+    triangle_surface s = triangles_of(icosphere(2));
+    auto const edge = s.triangles[100];
+    vec3 const p = s.positions[edge[0]];
+    vec3 const q{0.9 * p + 0.1 * s.positions[edge[1]]};
+    s.positions[edge[1]] = q;
+    collapse_report const r = collapse_short_edges(s, 1.01 * length(p - q));
+    REQUIRE(r.collapsed == 1);
+    CHECK(r.new_vertex[edge[0]] == r.new_vertex[edge[1]]);
+    CHECK(length(s.positions[r.new_vertex[edge[0]].value] - vec3{0.5 * p + 0.5 * q}) < 1e-15);
 }

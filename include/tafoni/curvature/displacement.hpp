@@ -15,7 +15,9 @@ namespace tafoni {
 /// What a direction policy knows of a vertex.
 struct wear_point {
     vec3 position{0, 0, 0};
-    vec3 laplacian{0, 0, 0};  ///< mean of the neighbours less the vertex [thesis, equation 9.2], length unit
+    /// Mean of the neighbours less the vertex [thesis, equation 9.2], length unit. Where curvature weathers an open mesh:
+    /// at its border of the neighbours along it, so that its outline stays.
+    vec3 laplacian{0, 0, 0};
     vec3 normal{0, 0, 0};     ///< unit, out of the solid; zero where there is none
     double curvature = 0;     ///< mean curvature over the largest absolute value in the mesh, in [-1, 1]
 };

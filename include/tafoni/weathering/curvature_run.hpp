@@ -12,6 +12,7 @@
 #include <tafoni/repair/collapse_short_edges.hpp>
 #include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
+#include <tafoni/weathering/detail/border_neighbors.hpp>
 #include <tafoni/weathering/detail/door_scale.hpp>
 #include <tafoni/weathering/detail/edge_lengths.hpp>
 
@@ -235,13 +236,15 @@ private:
         double const reach = mean_edge_ * report_.step;
         double const power = options_.power;
         threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t> along;
             for (std::size_t v = begin; v < end; ++v) {
                 vec3 const p = surface_.positions[v];
                 next_[v] = p;
                 moved_[v] = 0;
                 if (!(h_[v] > 0)) continue;
                 double const h = std::min(h_[v] * shrink, 1.0);
-                auto const around = rings_.neighbors(v);
+                std::span<std::uint32_t const> around = rings_.neighbors(v);
+                if (rings_.is_border(v)) around = detail::neighbors_along_border(rings_, surface_.triangles, v, along);
                 wear_point at{.position = scale_.point_to_user(p), .laplacian = vec3{0, 0, 0},
                               .normal = normal_.empty() ? vec3{0, 0, 0} : normal_[v],
                               .curvature = most > 0 ? h / most : 0.0};
