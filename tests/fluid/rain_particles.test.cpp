@@ -41,6 +41,37 @@ TEST_CASE("a drop in open space falls as the parabola says") {
     CHECK(rain.position(0)[2] == Approx(100 - 5 * t * t).epsilon(0.01));
 }
 
+TEST_CASE("in a frame each drop takes the steps that it needs") {
+    rain_options o{.particles = 200, .radius = 0.1, .gravity = vec3{0, 0, -10}, .frame = 0.5};
+    box_sink const keep{.keep = between(vec3{-1e3, -1e3, -1e3}, vec3{1e3, 1e3, 1e3})};
+    rain_particles falling({.box = between(vec3{0, 0, 100}, vec3{0, 0, 100}), .velocity = vec3{3, 0, 0}}, keep, o);
+    for (int k = 0; k < 4; ++k) REQUIRE(falling.step(open_space{}, inline_executor{}) == 0.5);
+    CHECK(falling.position(7)[0] == Approx(6));
+    CHECK(falling.velocity(7)[2] == Approx(-20));
+    CHECK(falling.position(7)[2] == Approx(80).epsilon(0.001));
+
+    // The same water as step by step: none falls through, and slow drops rest where they do.
+    triangle_surface const ground = floor_at(0.5);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.1);
+    box_emitter const from{.box = between(vec3{-8, -6, 5}, vec3{-5, 6, 8})};
+    rain_particles by_frames(from, keep, o);
+    o.frame = 0;
+    rain_particles by_steps(from, keep, o);
+    double t = 0;
+    while (t < 1.5) t += by_steps.step(walls, inline_executor{});
+    for (int k = 0; k < 3; ++k) by_frames.step(walls, inline_executor{});
+    for (std::size_t i = 0; i < 200; ++i) {
+        CHECK(by_frames.position(i)[2] + 0.5 * by_frames.position(i)[0] > 0);
+        CHECK(length(by_frames.position(i) - by_steps.position(i)) < 0.3);
+    }
+
+    o.frame = 1e9;
+    rain_particles endless({.box = from.box, .velocity = vec3{1e6, 0, 0}}, keep, o);
+    vec3 const before = endless.position(3);
+    CHECK_THROWS_WITH(endless.step(walls, inline_executor{}), Catch::Contains("10^6 steps"));
+    CHECK(endless.position(3) == before);
+}
+
 TEST_CASE("drops land, do not pass through, and run downhill") {
     triangle_surface const ground = floor_at(0.5);
     mesh_boundary const walls(ground.positions, ground.triangles, 0.3);
@@ -178,7 +209,7 @@ TEST_CASE("saved rain goes on to the bit, and takes no other's bytes") {
         CHECK_THROWS_AS(load(other, then), invalid_input);
         CHECK(saved(other) == before);
     };
-    rain_options others[7]{o, o, o, o, o, o, o};
+    rain_options others[9]{o, o, o, o, o, o, o, o, o};
     others[0].particles = 71;
     others[1].radius = 0.4;
     others[2].gravity[1] = 1;
@@ -186,6 +217,8 @@ TEST_CASE("saved rain goes on to the bit, and takes no other's bytes") {
     others[4].largest_step = 1;
     others[5].lifetime = 2;
     others[6].seed = 5;
+    others[7].adhesion = 0.5;
+    others[8].frame = 1;
     for (rain_options const& other : others) refused({from, keep, other});
     refused({from, {.keep = from.box}, o});
     refused({{.box = from.box}, keep, o});
@@ -209,6 +242,8 @@ TEST_CASE("rain out of range is refused by name") {
     for (double const bad : {-1.0, nan}) refused({.friction = bad}, "friction");
     for (double const bad : {0.0, nan}) refused({.largest_step = bad}, "largest_step");
     for (double const bad : {0.0, nan}) refused({.lifetime = bad}, "lifetime");
+    for (double const bad : {-1.0, nan}) refused({.frame = bad}, "frame");
+    for (double const bad : {-1.0, 11.0, nan}) refused({.adhesion = bad}, "adhesion");
     refused({.gravity = vec3{0, nan, 0}}, "gravity");
     CHECK_THROWS_AS(rain_particles({.box = between(vec3{1, 0, 0}, vec3{0, 1, 1})}, {.keep = b}), invalid_input);
     CHECK_THROWS_AS(rain_particles({.box = b}, {.keep = between(vec3{0, 0, nan}, vec3{1, 1, 1})}), invalid_input);

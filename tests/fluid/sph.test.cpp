@@ -66,6 +66,15 @@ triangle_surface tub(double wide, double high) {
     return s;
 }
 
+/// Throws when it has been asked so many times.
+struct falling_wall {
+    int* left;
+    template <class Visit>
+    void for_each_contact(vec3 const&, double, Visit const&) const {
+        if (--*left == 0) throw std::runtime_error("no wall");
+    }
+};
+
 }  // namespace
 
 TEMPLATE_TEST_CASE("the kernel integrates to one", "", float, double) {
@@ -323,10 +332,75 @@ TEMPLATE_TEST_CASE("the step keeps to its limits", "", float, double) {
     CHECK(fast.step(open_space{}, inline_executor{}) == Approx(0.25 * 0.5 / 1000));
     auto thick = o;
     thick.viscosity = 100;
-    CHECK(placed<TestType>({{.id = 0}}, thick).step(open_space{}, inline_executor{}) == Approx(0.25 * 0.25 / 400));
+    CHECK(placed<TestType>({{.id = 0}}, thick).step(open_space{}, inline_executor{}) == Approx(0.25 * 0.25 / 1200));
+    auto pulled = o;
+    pulled.gravity = vec3{0, -8e5, 0};
+    CHECK(placed<TestType>({{.id = 0}}, pulled).step(open_space{}, inline_executor{}) == Approx(0.25 * 0.5 * std::sqrt(0.5 / 8e5)));
+    auto stiff = o;
+    stiff.wall_stiffness = 1e8;
+    CHECK(placed<TestType>({{.id = 0}}, stiff).step(open_space{}, inline_executor{}) == Approx(0.25 / 1e4));
+    auto tough = o;
+    tough.wall_damping = 1e5;
+    CHECK(placed<TestType>({{.id = 0}}, tough).step(open_space{}, inline_executor{}) == Approx(0.25 / 1e5));
     auto short_step = o;
     short_step.largest_step = 1e-6;
     CHECK(placed<TestType>({{.id = 0}}, short_step).step(open_space{}, inline_executor{}) == 1e-6);
+}
+
+TEMPLATE_TEST_CASE("a frame takes as many stable steps as it needs, and no longer than it is", "", float, double) {
+    std::vector<fluid_particle> const one{{.id = 0, .position = vec3{0, 0, 100}, .velocity = vec3{3, 0, 0}}};
+    sph_options o{.spacing = 0.1, .gravity = vec3{0, 0, -10}, .frame = 0.25};
+    auto f = placed<TestType>(one, o);
+    for (int k = 0; k < 4; ++k) REQUIRE(f.step(open_space{}, inline_executor{}) == 0.25);
+    CHECK(f.velocity(0)[2] == Approx(-10).epsilon(1e-5));
+    CHECK(f.position(0)[2] == Approx(95).epsilon(1e-3));
+    CHECK(f.position(0)[0] == Approx(3).epsilon(1e-5));
+
+    // A frame that one step fills is that step; a longer one goes through the states of its steps.
+    auto crowd = cloud(5, 1, 0.3, 2);
+    o = {.spacing = 1, .sound_speed = 30, .frame = 1e-3};
+    auto framed = placed<TestType>(crowd, o);
+    o.frame = 0;
+    o.largest_step = 1e-3;
+    auto stepped = placed<TestType>(crowd, o);
+    for (int k = 0; k < 6; ++k) REQUIRE(framed.step(open_space{}, inline_executor{}) == stepped.step(open_space{}, inline_executor{}));
+    CHECK(state(framed) == state(stepped));
+    o.largest_step = 1e-2;
+    auto single = placed<TestType>(crowd, o);
+    double const dt = single.step(open_space{}, inline_executor{});
+    o.frame = 2 * dt * (1 - 1e-9);  // halves of it are stable
+    auto two = placed<TestType>(crowd, o);
+    two.step(open_space{}, inline_executor{});
+    o.frame = 0;
+    o.largest_step = dt * (1 - 1e-9);
+    auto halves = placed<TestType>(crowd, o);
+    for (int k = 0; k < 2; ++k) halves.step(open_space{}, inline_executor{});
+    for (std::size_t i = 0; i < crowd.size(); ++i) CHECK(length(two.position(i) - halves.position(i)) < 1e-3);
+
+    o.frame = 1e9;
+    auto endless = placed<TestType>(crowd, o);
+    auto const before = state(endless);
+    CHECK_THROWS_WITH(endless.step(open_space{}, inline_executor{}), Catch::Contains("10^6 steps"));
+    CHECK(state(endless) == before);
+}
+
+TEST_CASE("a frame that walls cut short is gone on with") {
+    auto const crowd = cloud(4, 1, 0.3, 2);
+    sph_options const o{.spacing = 1, .sound_speed = 30, .frame = 0.3};
+    auto whole = placed<double>(crowd, o);
+    auto cut = placed<double>(crowd, o);
+    whole.step(open_space{}, inline_executor{});
+    int left = 64 * 7 + 5;
+    CHECK_THROWS_AS(cut.step(falling_wall{&left}, inline_executor{}), std::runtime_error);
+    tafoni::detail::byte_writer out;
+    cut.save(out);
+    tafoni::detail::byte_reader in(out.bytes(), "here");
+    auto other = placed<double>({}, o);
+    other.load(in);
+    for (auto* f : {&cut, &other}) {
+        CHECK(f->step(open_space{}, inline_executor{}) == 0.3);
+        CHECK(state(*f) == state(whole));
+    }
 }
 
 TEMPLATE_TEST_CASE("emitters keep to the spacing and the number, and sinks make room", "", float, double) {
@@ -471,8 +545,9 @@ TEST_CASE("what a fluid is told is checked by name") {
         refused({.centre = vec3{bad, 0, 0}}, "centre");
         refused({.toward = bad}, "toward");
     }
-    for (double const bad : {0.0, -1.0, 0.6, nan}) refused({.courant = bad}, "courant");
+    for (double const bad : {0.0, -1.0, 1.1, nan}) refused({.courant = bad}, "courant");
     for (double const bad : {0.0, -1.0, nan, inf}) refused({.largest_step = bad}, "largest_step");
+    for (double const bad : {-1.0, nan, inf}) refused({.frame = bad}, "frame");
     refused({.gravity = vec3{0, 0, 0}}, "sound_speed");  // nothing that it could follow from
     auto const box = between(vec3{0, 0, 0}, vec3{1e4, 1e4, 1});
     CHECK_THROWS_WITH(sph<float>({.box = box}, everywhere()), Catch::Contains("places"));
@@ -480,5 +555,15 @@ TEST_CASE("what a fluid is told is checked by name") {
     sph<float> f(std::vector<box_emitter>{}, everywhere(), {.particles = 2});
     CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>(3)), Catch::Contains("more particles"));
     CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>(2)), Catch::Contains("twice"));
-    CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>{{.id = 0, .position = vec3{0, nan, 0}}}), Catch::Contains("not finite"));
+    f.place(std::vector<fluid_particle>{{.id = 3, .position = vec3{7, 7, 7}}});
+    auto const before = state(f);
+    for (double const bad : {nan, inf, -inf, 1e300}) {
+        CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>{{}, {.id = 1, .position = vec3{0, bad, 0}}}), Catch::Contains("particle 1 is not finite"));
+        CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>{{.id = 9, .velocity = vec3{0, 0, bad}}}), Catch::Contains("particle 0 is not finite"));
+    }
+    CHECK_THROWS_WITH(f.place(std::vector<fluid_particle>{{.id = ~std::uint64_t{0}}}), Catch::Contains("2^63"));
+    CHECK(state(f) == before);
+    box_emitter const here{.box = between(vec3{0, 0, 0}, vec3{0, 0, 0})};
+    box_emitter const there{.box = between(vec3{1e60, 0, 0}, vec3{1e60, 0, 0})};
+    CHECK_THROWS_WITH(sph<float>(std::vector<box_emitter>{here, there}, everywhere()), Catch::Contains("too far"));
 }

@@ -29,6 +29,8 @@ struct rain_options {
     double adhesion = 0.8;             ///< pull of the ground on a drop that touches it, over that of gravity, in [0, 10]:
                                        ///< a slow drop hangs on where it overhangs by less than asin(adhesion)
     double largest_step = 0.05;        ///< s, > 0
+    double frame = 0;                  ///< s that `step` advances by, each drop in as many steps as it takes; 0 = one step
+                                       ///< for all, as the fastest needs it
     double lifetime = 30;              ///< s after which a drop has seeped away, > 0
     std::uint64_t seed = 0;
 
@@ -37,7 +39,7 @@ struct rain_options {
         out.add(std::uint64_t{particles});
         out.add(radius);
         out.add(gravity);
-        for (double const v : {friction, adhesion, largest_step, lifetime}) out.add(v);
+        for (double const v : {friction, adhesion, largest_step, frame, lifetime}) out.add(v);
         out.add(seed);
     }
 
@@ -49,6 +51,7 @@ struct rain_options {
         detail::require_range("rain_options.friction", friction, 0, 1e6);
         detail::require_range("rain_options.adhesion", adhesion, 0, 10);
         detail::require_range("rain_options.largest_step", largest_step, 1e-12, 1e12);
+        detail::require_range("rain_options.frame", frame, 0, 1e12);
         detail::require_range("rain_options.lifetime", lifetime, 1e-12, 1e12);
     }
 };
@@ -63,7 +66,7 @@ struct rain_options {
 /// (seed, id) only. Models `particle_fluid`.
 class rain_particles {
 public:
-    /// Drops start spread over the emitter, at times spread over their fall. O(particles).
+    /// All drops start at once, spread over the emitter. O(particles).
     /// \throws invalid_input  `bad_parameter`, `bad_box`.
     rain_particles(box_emitter const& emitter, box_sink const& sink, rain_options const& options = {})
         : emitter_((emitter.validate(), emitter)), sink_((sink.validate(), sink)), options_((options.validate(), options)) {
@@ -80,21 +83,29 @@ public:
     [[nodiscard]] double reach() const noexcept { return options_.radius; }
     [[nodiscard]] rain_options const& options() const noexcept { return options_; }
 
-    /// One step: no drop moves farther than half its radius along the way, nor longer than `largest_step`.
-    /// O(particles x faces near one).
+    /// One step, in which no drop moves farther than half its radius along the way, nor longer than `largest_step`; or
+    /// a frame of such steps. O(particles x steps x faces near one).
+    /// \throws invalid_input  `out_of_range` where a drop would take a million steps in a frame. The rain is as before
+    /// then, and where the walls throw.
     template <fluid_boundary B, executor E>
     double step(B const& walls, E const& threads) {
-        double const dt = time_step();
+        double const dt = options_.frame > 0 ? options_.frame : stable(fastest());
         order_.sort(walls, drops_.size(), [&](std::size_t i) -> vec3 const& { return drops_[i].position; });
+        next_.resize(drops_.size());
         threads.for_blocks(drops_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) move(drops_[order_[k]], walls, dt);
-        });
-        for (drop& d : drops_) {
-            bool inside = d.age < options_.lifetime;
-            for (int a = 0; a < 3; ++a) {
-                inside = inside && d.position[a] >= sink_.keep.lo[a] && d.position[a] <= sink_.keep.hi[a];
+            for (std::size_t k = begin; k < end; ++k) {
+                drop& d = next_[order_[k]];
+                d = drops_[order_[k]];
+                if (options_.frame > 0) {
+                    move_for(d, walls, dt);
+                } else {
+                    move(d, walls, dt);
+                }
             }
-            if (!inside) d = fresh(next_id_++);
+        });
+        drops_.swap(next_);
+        for (drop& d : drops_) {
+            if (gone(d)) d = fresh(next_id_++);
         }
         return dt;
     }
@@ -160,15 +171,35 @@ private:
         return d;
     }
 
-    [[nodiscard]] double time_step() const noexcept {
-        double fastest = 0;
-        for (drop const& d : drops_) fastest = std::max(fastest, squared_length(d.velocity));
+    [[nodiscard]] bool gone(drop const& d) const noexcept { return d.age >= options_.lifetime || !sink_.keep.contains(d.position); }
+
+    [[nodiscard]] double fastest() const noexcept {
+        double square = 0;
+        for (drop const& d : drops_) square = std::max(square, squared_length(d.velocity));
+        return std::sqrt(square);
+    }
+    /// The step in which a drop of speed `v` moves by half the radius: that = v dt + g dt^2.
+    [[nodiscard]] double stable(double v) const noexcept {
         double const g = length(options_.gravity) + pull_;
         double const far = 0.5 * options_.radius;
-        // far = v dt + g dt^2
-        double const v = std::sqrt(fastest);
         double const dt = v + g > 0 ? 2 * far / (v + std::sqrt(v * v + 4 * g * far)) : options_.largest_step;
         return std::min(dt, options_.largest_step);
+    }
+
+    /// In even shares of what is left; not beyond the end of the drop.
+    template <fluid_boundary B>
+    void move_for(drop& d, B const& walls, double rest) const {
+        while (rest > 0 && !gone(d)) {
+            double const shares = std::ceil(rest / stable(length(d.velocity)));
+            if (!(shares <= 1e6)) {
+                detail::fail<invalid_input>(errc::out_of_range,
+                                            "rain_particles: a drop takes more than 10^6 steps in a frame of " + detail::number_text(options_.frame) + " s",
+                                            {.kind = entity::parameter, .value = shares, .limit = 1e6});
+            }
+            double const dt = rest / std::max(shares, 1.0);
+            move(d, walls, dt);
+            rest = shares > 1 ? rest - dt : 0;
+        }
     }
 
     template <fluid_boundary B>
@@ -207,6 +238,7 @@ private:
     rain_options options_;
     double pull_ = 0;  ///< of the ground, length unit / s^2
     std::vector<drop> drops_{};
+    std::vector<drop> next_{};
     detail::visit_order order_{};
     std::uint64_t next_id_ = 0;
 };

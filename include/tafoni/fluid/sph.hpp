@@ -37,7 +37,7 @@ struct fluid_particle {
 /// rho_i = sum m W(x_i - x_j), the particle itself included; p = c^2 max(rho - rho_0, 0); accelerations
 /// -sum m (p_i / rho_i^2 + p_j / rho_j^2 + viscosity) grad W, walls by k_s d - k_d (v . n) along the normal with
 /// d = reach - distance [thesis, equation 8.1 with the erratum]; velocities first, then positions. The step is courant
-/// times the least of h / (c + v), sqrt(h / a), h^2 / (4 nu), 1 / sqrt(k_s) and 1 / k_d, at most `largest_step`.
+/// times the least of h / (c + v), sqrt(h / a) / 2, h^2 / (12 nu), 1 / sqrt(k_s) and 1 / k_d, at most `largest_step`.
 /// An emitter puts a particle on each place of its lattice that is free as long as there may be more; the sink takes
 /// away what leaves its box. The sums over neighbours run by cell and id in fixed lanes: the state depends on
 /// particles and ids only, not on threads, instruction set or the order in which particles were given.
@@ -54,6 +54,11 @@ public:
             places_.emplace_back(e, options_.spacing);
         }
         h_ = options_.smoothing * options_.spacing;
+        if (!emitters_.empty()) origin_ = emitters_[0].box.lo;
+        for (box_emitter const& e : emitters_) {
+            if (holds(e.box.lo, e.velocity) && holds(e.box.hi, e.velocity)) continue;
+            detail::fail<invalid_input>(errc::out_of_range, "sph: an emitter is too far from the first, or too fast, for numbers of the scalar");
+        }
         sound_ = options_.sound_speed > 0 ? options_.sound_speed : 10 * fastest();
         detail::require_range("sph_options.sound_speed (without gravity or speed from an emitter it must be given)", sound_, 1e-100, 1e100);
         reach_ = options_.reach > 0 ? options_.reach : options_.spacing;
@@ -61,35 +66,38 @@ public:
         stiffness_ = options_.wall_stiffness > 0 ? options_.wall_stiffness : pace * pace;
         damping_ = options_.wall_damping > 0 ? options_.wall_damping : pace;
         viscosity_ = options_.viscosity + options_.damping * h_ * sound_ / 10;
-        if (!emitters_.empty()) origin_ = emitters_[0].box.lo;
     }
     sph(box_emitter const& emitter, box_sink const& sink, sph_options const& options = {})
         : sph(std::vector<box_emitter>{emitter}, sink, options) {}
 
-    /// Replaces all particles. O(n log n). \throws invalid_input  `non_finite_vertex` with the place in `all`;
-    /// `bad_parameter` for an id that is given twice; `size_overflow` for more than `options.particles`.
+    /// Replaces all particles. O(n log n). \throws invalid_input  `non_finite_vertex` with the place in `all`, also for
+    /// what the scalar cannot hold; `bad_parameter` for an id that is given twice or 2^63 and more; `size_overflow` for more than `options.particles`.
     void place(std::span<fluid_particle const> all) {
         if (all.size() > options_.particles) {
             detail::fail<invalid_input>(errc::size_overflow, "sph.place: more particles than sph_options.particles",
                                         {.value = static_cast<double>(all.size()), .limit = static_cast<double>(options_.particles)});
         }
         std::vector<fluid_particle> sorted(all.begin(), all.end());
+        std::sort(sorted.begin(), sorted.end(), [](auto const& a, auto const& b) { return a.id < b.id; });
         for (std::size_t i = 0; i < sorted.size(); ++i) {
-            if (is_finite(sorted[i].position) && is_finite(sorted[i].velocity)) continue;
+            bool const twice = i > 0 && sorted[i].id == sorted[i - 1].id;
+            if (!twice && sorted[i].id >> 63 == 0) continue;
+            detail::fail<invalid_input>(errc::bad_parameter, "sph.place: id " + std::to_string(sorted[i].id) + (twice ? " is given twice" : " is 2^63 or more"),
+                                        {.kind = entity::parameter, .value = static_cast<double>(sorted[i].id)});
+        }
+        vec3 const then = origin_;
+        if (emitters_.empty() && !sorted.empty()) origin_ = sorted[0].position;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (holds(all[i].position, all[i].velocity)) continue;
+            origin_ = then;
             detail::fail<invalid_input>(errc::non_finite_vertex, "sph.place: particle " + std::to_string(i) + " is not finite",
                                         {.kind = entity::vertex, .index = i});
         }
-        std::sort(sorted.begin(), sorted.end(), [](auto const& a, auto const& b) { return a.id < b.id; });
-        for (std::size_t i = 1; i < sorted.size(); ++i) {
-            if (sorted[i].id != sorted[i - 1].id) continue;
-            detail::fail<invalid_input>(errc::bad_parameter, "sph.place: id " + std::to_string(sorted[i].id) + " is given twice",
-                                        {.kind = entity::parameter, .value = static_cast<double>(sorted[i].id)});
-        }
         resize(0);
         ids_.clear();
-        if (emitters_.empty() && !sorted.empty()) origin_ = sorted[0].position;
         for (fluid_particle const& p : sorted) append(p.id, p.position, p.velocity);
         next_id_ = sorted.empty() ? 0 : sorted.back().id + 1;
+        made_ = 0;
     }
 
     [[nodiscard]] std::size_t particle_count() const noexcept { return ids_.size(); }
@@ -108,38 +116,20 @@ public:
     [[nodiscard]] double sound_speed() const noexcept { return sound_; }
     [[nodiscard]] sph_options const& options() const noexcept { return options_; }
 
-    /// One step. O(particles x neighbours + cells). \throws invalid_input  `size_overflow` where particles pile up on a
-    /// point, `out_of_range` where an acceleration is no number; the particles have not moved then.
+    /// One step, or as many as make a frame. O(steps x (particles x neighbours + cells)).
+    /// \throws invalid_input  `size_overflow` where particles pile up on a point, `out_of_range` where an acceleration is
+    /// no number or a frame would take a million steps; no particle has moved in that step then, and the next call
+    /// goes on with the frame.
     template <fluid_boundary B, executor E>
     double step(B const& walls, E const& threads) {
-        emit();
-        std::size_t const n = ids_.size();
-        if (n == 0) return options_.largest_step;
-        double const ratio = 1 / options_.smoothing;
-        double const pace = sound_ / h_;
-        neighbours_.accelerate(x_, v_, {.mass = ratio * ratio * ratio / pi, .stiffness = pace * pace, .viscosity = 20 * viscosity_ / (h_ * h_)},
-                               a_, density_, threads);
-        std::vector<extremes> blocks((n + detail::particle_grain - 1) / detail::particle_grain);
-        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
-            blocks[from / detail::particle_grain] = add_forces(walls, from, to);
-        });
-        extremes all;
-        for (extremes const& b : blocks) {
-            all.velocity = std::max(all.velocity, b.velocity);
-            all.acceleration = std::max(all.acceleration, b.acceleration);
-            all.finite = all.finite && b.finite;
+        if (options_.frame == 0) return advance(walls, threads, options_.largest_step);
+        while (made_ < options_.frame) {
+            double const rest = options_.frame - made_;
+            double const dt = advance(walls, threads, rest);
+            made_ = dt < rest ? made_ + dt : options_.frame;
         }
-        double const dt = time_step(all);
-        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
-            for (std::size_t d = 0; d < 3; ++d) {
-                for (std::size_t i = from; i < to; ++i) {
-                    v_[d][i] += static_cast<Scalar>(dt) * a_[d][i];
-                    x_[d][i] += static_cast<Scalar>(dt) * v_[d][i];
-                }
-            }
-        });
-        drain();
-        return dt;
+        made_ = 0;
+        return options_.frame;
     }
 
     /// All that decides the steps to come, and what the fluid was told. O(particles).
@@ -147,6 +137,7 @@ public:
         detail::fluid_writer out(bytes, kind, settings());
         out.put(origin_);
         out.put(next_id_);
+        out.put(made_);
         out.put(std::uint64_t{ids_.size()});
         for (std::size_t i = 0; i < ids_.size(); ++i) {
             out.put(ids_[i]);
@@ -165,6 +156,8 @@ public:
         sph next(*this);
         in.get(next.origin_);
         next.next_id_ = in.get();
+        in.get(next.made_);
+        if (!(next.made_ >= 0 && next.made_ <= options_.frame)) in.bad("the time is out of range");
         std::size_t const n = in.count(8 + 7 * sizeof(Scalar));
         next.ids_.resize(n);
         next.resize(n);
@@ -208,6 +201,15 @@ private:
         return std::sqrt(square);
     }
 
+    /// Whether the scalar can hold a place from the origin, and a velocity, with room for their squares' sums.
+    [[nodiscard]] bool holds(vec3 const& p, vec3 const& v) const noexcept {
+        constexpr double most = sizeof(Scalar) == 4 ? 1e18 : 1e150;
+        for (int d = 0; d < 3; ++d) {
+            if (!(std::fabs((p[d] - origin_[d]) / h_) <= most && std::fabs(v[d] / h_) <= most)) return false;
+        }
+        return true;
+    }
+
     void resize(std::size_t n) {
         for (triple* t : {&x_, &v_}) {
             for (auto& a : *t) a.resize(n);
@@ -236,6 +238,39 @@ private:
                 return true;
             });
         }
+    }
+
+    /// One stable step, in a frame an even share of the rest `most` of it.
+    template <fluid_boundary B, executor E>
+    double advance(B const& walls, E const& threads, double most) {
+        emit();
+        std::size_t const n = ids_.size();
+        if (n == 0) return most;
+        double const ratio = 1 / options_.smoothing;
+        double const pace = sound_ / h_;
+        neighbours_.accelerate(x_, v_, {.mass = ratio * ratio * ratio / pi, .stiffness = pace * pace, .viscosity = 20 * viscosity_ / (h_ * h_)},
+                               a_, density_, threads);
+        std::vector<extremes> blocks((n + detail::particle_grain - 1) / detail::particle_grain);
+        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
+            blocks[from / detail::particle_grain] = add_forces(walls, from, to);
+        });
+        extremes all;
+        for (extremes const& b : blocks) {
+            all.velocity = std::max(all.velocity, b.velocity);
+            all.acceleration = std::max(all.acceleration, b.acceleration);
+            all.finite = all.finite && b.finite;
+        }
+        double const dt = time_step(all, most);
+        threads.for_blocks(n, detail::particle_grain, [&](std::size_t from, std::size_t to) {
+            for (std::size_t d = 0; d < 3; ++d) {
+                for (std::size_t i = from; i < to; ++i) {
+                    v_[d][i] += static_cast<Scalar>(dt) * a_[d][i];
+                    x_[d][i] += static_cast<Scalar>(dt) * v_[d][i];
+                }
+            }
+        });
+        drain();
+        return dt;
     }
 
     /// Gravity and walls.
@@ -273,17 +308,23 @@ private:
     }
 
     /// All in units of h and seconds.
-    [[nodiscard]] double time_step(extremes const& e) const {
+    [[nodiscard]] double time_step(extremes const& e, double most) const {
         double least = 1 / (sound_ / h_ + std::sqrt(e.velocity));
-        least = std::min(least, std::sqrt(1 / std::sqrt(e.acceleration)));
-        least = std::min(least, h_ * h_ / (4 * viscosity_));
+        least = std::min(least, 0.5 * std::sqrt(1 / std::sqrt(e.acceleration)));
+        least = std::min(least, h_ * h_ / (12 * viscosity_));
         least = std::min({least, 1 / std::sqrt(stiffness_), 1 / damping_});
         double const dt = std::min(options_.courant * least, options_.largest_step);
         if (!e.finite || !(dt > 0)) {
             detail::fail<invalid_input>(errc::out_of_range, "sph: velocities or accelerations are beyond the numbers of the scalar",
                                         {.value = e.acceleration});
         }
-        return dt;
+        if (options_.frame == 0) return dt;
+        double const shares = std::ceil(most / dt);
+        if (!(shares <= 1e6)) {
+            detail::fail<invalid_input>(errc::out_of_range, "sph: a frame of " + detail::number_text(options_.frame) + " s takes more than 10^6 steps",
+                                        {.kind = entity::parameter, .value = shares, .limit = 1e6});
+        }
+        return most / std::max(shares, 1.0);
     }
 
     /// Takes away what has left, in place: ids stay in order.
@@ -315,6 +356,7 @@ private:
     double stiffness_ = 1;
     double damping_ = 1;
     double viscosity_ = 0;
+    double made_ = 0;                   ///< of a frame that an exception cut short, s
     std::uint64_t next_id_ = 0;
     std::vector<std::uint64_t> ids_{};  ///< ascending; all arrays without `s` go with it
     triple x_{};                        ///< from the origin, in h

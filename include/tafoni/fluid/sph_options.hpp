@@ -26,8 +26,9 @@ struct sph_options {
     vec3 gravity{0, 0, -9.81};        ///< length unit / s^2
     vec3 centre{0, 0, 0};             ///< that `toward` pulls to
     double toward = 0;                ///< acceleration towards the centre, the same at every distance, length unit / s^2
-    double courant = 0.4;             ///< share of the largest stable step, in (0, 0.5]
+    double courant = 0.8;             ///< step over h / (c + v), in (0, 1]; still water heats up from 1.5 on
     double largest_step = 0.05;       ///< s, > 0
+    double frame = 0;                 ///< s that `step` advances by, in as many stable steps as it takes; 0 = one stable step
 
     /// Calls `out.add` with each number in turn: what a saved fluid is compared by.
     void describe(auto& out) const {
@@ -35,7 +36,7 @@ struct sph_options {
         for (double const v : {spacing, smoothing, sound_speed, viscosity, damping, reach, wall_stiffness, wall_damping}) out.add(v);
         out.add(gravity);
         out.add(centre);
-        for (double const v : {toward, courant, largest_step}) out.add(v);
+        for (double const v : {toward, courant, largest_step, frame}) out.add(v);
     }
 
     /// \throws invalid_input  `bad_parameter`.
@@ -53,8 +54,9 @@ struct sph_options {
         for (int d = 0; d < 3; ++d) detail::require_range("sph_options.gravity", gravity[d], -1e100, 1e100);
         for (int d = 0; d < 3; ++d) detail::require_range("sph_options.centre", centre[d], -1e100, 1e100);
         detail::require_range("sph_options.toward", toward, -1e100, 1e100);
-        detail::require_range("sph_options.courant", courant, 1e-6, 0.5);
+        detail::require_range("sph_options.courant", courant, 1e-6, 1);
         detail::require_range("sph_options.largest_step", largest_step, 1e-30, 1e30);
+        detail::require_range("sph_options.frame", frame, 0, 1e30);
     }
 };
 

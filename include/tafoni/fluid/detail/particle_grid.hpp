@@ -30,7 +30,7 @@ public:
     static constexpr std::uint32_t most_in_cell = 1024;  ///< of the least size
 
     /// O(particles + cells). \throws invalid_input  `size_overflow` where a cell holds more than about 1024 particles;
-    /// in a fluid at rest it holds 2.
+    /// in a fluid at rest it holds 2. `out_of_range` where the numbers end.
     template <executor E>
     void build(std::span<Scalar const> x, std::span<Scalar const> y, std::span<Scalar const> z, E const& threads) {
         std::size_t const n = x.size();
@@ -103,6 +103,9 @@ private:
             if (all[d].empty()) low = high = 0;
             lo_[d] = low;
             extent[d] = high - low;
+            if (std::isfinite(extent[d])) continue;
+            fail<invalid_input>(errc::out_of_range, "sph: particles are farther apart than the scalar's numbers reach",
+                                {.value = static_cast<double>(low), .limit = static_cast<double>(high)});
         }
         double scale = 1;
         std::array<double, 3> along{};
