@@ -108,6 +108,9 @@ private:
     };
     static constexpr std::size_t particle_grain = 2048;
 
+    [[nodiscard]] detail::moving_surface moving() noexcept {
+        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_};
+    }
     [[nodiscard]] std::uint64_t id_of(std::size_t i) const {
         if constexpr (requires { { fluid_.id(i) } -> std::same_as<std::uint64_t>; }) {
             return fluid_.id(i);
@@ -120,7 +123,7 @@ private:
     void iterate(Executor const& threads) {
         if (!fresh_) {
             rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
-            if constexpr (exchange_rule<Process>) settle_.adopt(surface_.positions, surface_.triangles, rings_);
+            moves_.adopt(moving());
             if (!(mean_edge_ > 0)) mean_edge_ = surface_.mean_edge_length();  // what grows or is split later changes no limit
             fresh_ = true;
         }
@@ -147,11 +150,12 @@ private:
         ahead_ = 0;
         book_contacts(most);
         if constexpr (exchange_rule<Process>) {
-            settle_(surface_.positions, surface_.triangles, rings_, unit_, most, books_, wear_, sediment_);
+            settle_(moving(), moves_, unit_, most, books_, wear_, sediment_);
         } else {
+            before_ = surface_.positions;
+            detail::follow(moving(), next_, moves_, most);
             book_difference();
-            for (std::size_t v = 0; v < next_.size(); ++v) wear_[v] += length(next_[v] - surface_.positions[v]);
-            std::swap(surface_.positions, next_);
+            for (std::size_t v = 0; v < next_.size(); ++v) wear_[v] += length(next_[v] - before_[v]);
         }
         report_.time += dt;
         ++report_.iterations;
@@ -214,7 +218,7 @@ private:
             for (block const& b : blocks_) {
                 for (contact const& c : b.contacts) exchange_.ask(surface_.triangles[c.face], c.taken);
             }
-            exchange_.close(surface_.positions, surface_.triangles, rings_, unit_, most, books_);
+            exchange_.close(moving(), moves_, unit_, most, books_);
         }
         for (block& b : blocks_) {
             report_.contacts += b.contacts.size();
@@ -301,17 +305,17 @@ private:
         return way;
     }
 
-    /// The volume between the surface and `next_`, face by face; water carries it all away.
+    /// The volume between `before_` and the surface, face by face; water carries it all away.
     void book_difference() {
-        vec3 const o = surface_.positions.front();
+        vec3 const o = before_.front();
         for (auto const& t : surface_.triangles) {
             bool same = true;
-            for (std::uint32_t const c : t) same = same && next_[c] == surface_.positions[c];
+            for (std::uint32_t const c : t) same = same && next_[c] == before_[c];
             if (same) continue;
             auto const six = [&](std::vector<vec3> const& p) {
                 return dot(p[t[0]] - o, cross(p[t[1]] - o, p[t[2]] - o));
             };
-            std::int64_t const taken = unit_.fixed((six(surface_.positions) - six(next_)) / 6);
+            std::int64_t const taken = unit_.fixed((six(before_) - six(next_)) / 6);
             books_.eroded += taken;
             books_.left += taken;
             sediment_[t[0]] -= taken;
@@ -352,6 +356,7 @@ private:
     detail::sediment_books books_{};
     detail::sediment_exchange exchange_{};
     detail::sediment_settlement settle_{};
+    detail::sound_moves moves_{};
     double ahead_ = 0;                    ///< s that the fluid is ahead of the surface by, after an exception
     std::vector<block> blocks_{};
     detail::visit_order order_{};
@@ -361,6 +366,7 @@ private:
     std::vector<double> mean_{};
     std::vector<vec3> normal_{};
     std::vector<vec3> next_{};
+    std::vector<vec3> before_{};
     std::vector<double> wear_{};
     std::vector<std::uint64_t> flow_{};
     std::vector<std::int64_t> sediment_{};
