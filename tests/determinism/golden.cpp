@@ -21,6 +21,9 @@
 #include <tafoni/decomposition/voxel_cells.hpp>
 #include <tafoni/field/fractal_noise.hpp>
 #include <tafoni/field/noise.hpp>
+#include <tafoni/fluid/mesh_boundary.hpp>
+#include <tafoni/fluid/rain_particles.hpp>
+#include <tafoni/fluid/sph.hpp>
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/graph/make_link_graph.hpp>
 #include <tafoni/percolation/cone_rain.hpp>
@@ -380,6 +383,47 @@ void wrinkles(fingerprint& f) {
     for (double const d : pattern.displacement()) f.add(d);
 }
 
+template <class Fluid>
+void add_fluid(fingerprint& f, Fluid const& fluid) {
+    tafoni::detail::byte_writer out;
+    fluid.save(out);
+    for (std::byte const b : out.bytes()) f.add(std::to_integer<unsigned>(b));
+}
+/// What falls on the dented ball from above it, and is gone below.
+tafoni::box_emitter const above{.box = {.lo = {-0.4, -0.5, 1.3}, .hi = {0.5, 0.4, 1.8}}, .velocity = {0.1, 0, -1}};
+tafoni::box_sink const around{.keep = {.lo = {-2, -2, -1.5}, .hi = {2, 2, 2}}};
+tafoni::rain_particles shower() {
+    return {above, around, {.particles = 120, .radius = 0.08, .friction = 0.5, .lifetime = 2, .seed = 6}};
+}
+
+template <class Scalar>
+void water(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    auto const ball = dented(3);
+    tafoni::sph<Scalar> water(above, around, {.particles = 400, .spacing = 0.1, .smoothing = 1.1, .sound_speed = 20, .viscosity = 0.01, .toward = 3});
+    tafoni::mesh_boundary const walls(ball.positions, ball.triangles, water.reach());
+    for (int k = 0; k < 60; ++k) f.add(k % 2 == 0 ? water.step(walls, pool) : water.step(walls, tafoni::inline_executor{}));
+    add_fluid(f, water);
+}
+void water_by_frames(fingerprint& f) {
+    auto const ball = dented(3);
+    tafoni::sph<float> water(above, around, {.particles = 200, .spacing = 0.1, .sound_speed = 20, .frame = 0.02});
+    tafoni::mesh_boundary const walls(ball.positions, ball.triangles, water.reach());
+    for (int k = 0; k < 10; ++k) f.add(water.step(walls, tafoni::inline_executor{}));
+    add_fluid(f, water);
+}
+void rain(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    auto const ball = dented(3);
+    tafoni::mesh_boundary const walls(ball.positions, ball.triangles, 0.08);
+    auto drops = shower();
+    for (int k = 0; k < 400; ++k) f.add(drops.step(walls, pool));
+    add_fluid(f, drops);
+    tafoni::rain_particles framed(above, around, {.particles = 120, .radius = 0.08, .adhesion = 0.5, .frame = 0.05});
+    for (int k = 0; k < 20; ++k) f.add(framed.step(walls, pool));
+    add_fluid(f, framed);
+}
+
 }  // namespace
 
 int main() {
@@ -402,4 +446,8 @@ int main() {
     print("curvature_by_estimators", curvature_by_estimators);
     print("weathered_by_curvature", weathered_by_curvature);
     print("wrinkles", wrinkles);
+    print("water_float", water<float>);
+    print("water_double", water<double>);
+    print("water_by_frames", water_by_frames);
+    print("rain", rain);
 }
