@@ -198,6 +198,7 @@
 #include <tafoni/weathering/frost_report.hpp>
 #include <tafoni/weathering/frost_run.hpp>
 #include <tafoni/weathering/frost_wedging.hpp>
+#include <tafoni/weathering/hydraulic_checkpoint.hpp>
 #include <tafoni/weathering/hydraulic_erosion.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 #include <tafoni/weathering/voxel_options.hpp>

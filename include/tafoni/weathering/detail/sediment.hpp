@@ -6,6 +6,7 @@
 #include <tafoni/core/error.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
+#include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sound_moves.hpp>
 
 #include <algorithm>
@@ -14,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -45,32 +45,18 @@ private:
 
 /// Who holds what: particles by id, vertices what they owe (below 0) or are owed.
 struct sediment_books {
-    std::unordered_map<std::uint64_t, std::int64_t> load{};  ///< never walked in its own order but to sum
-    std::vector<std::int64_t> due{};                         ///< per vertex
+    particle_loads load{};
+    std::vector<std::int64_t> due{};  ///< per vertex
     std::int64_t eroded = 0;
     std::int64_t deposited = 0;
     std::int64_t left = 0;
 
     [[nodiscard]] std::int64_t carried() const noexcept {
-        std::int64_t sum = 0;
-        for (auto const& [id, v] : load) sum += v;
+        std::int64_t sum = load.sum();
         for (std::int64_t const v : due) sum += v;
         return sum;
     }
     [[nodiscard]] bool balanced() const noexcept { return eroded == deposited + carried() + left; }
-
-    /// What particles that are gone carried has left the scene. `alive(id)` tells.
-    template <class Alive>
-    void drop_gone(Alive const& alive) {
-        for (auto i = load.begin(); i != load.end();) {
-            if (alive(i->first)) {
-                ++i;
-            } else {
-                left += i->second;
-                i = load.erase(i);
-            }
-        }
-    }
 };
 
 /// Who asks for what in an iteration, and what the surface can give.

@@ -1,0 +1,87 @@
+/// \file
+/// Where curvature takes the vertices that water is near.
+#ifndef TAFONI_WEATHERING_DETAIL_WATER_DISPLACEMENT_HPP
+#define TAFONI_WEATHERING_DETAIL_WATER_DISPLACEMENT_HPP
+
+#include <tafoni/core/elementary.hpp>
+#include <tafoni/core/executor.hpp>
+#include <tafoni/curvature/concepts.hpp>
+#include <tafoni/curvature/displacement.hpp>
+#include <tafoni/curvature/vertex_normals.hpp>
+#include <tafoni/weathering/detail/near_water.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace tafoni::detail {
+
+/// Equations 9.4 to 9.7 of Skala's thesis; keeps its memory from use to use.
+class water_displacement {
+public:
+    /// Puts into `next` where the vertices go that are within the influence of one of `water`; `mean_edge` and `most` in
+    /// length units. O(vertices + faces + water).
+    template <class Process, executor E>
+    void find(Process const& process, surface_view const& surface, std::span<vec3 const> water, double mean_edge, double most,
+              std::vector<vec3>& next, E const& threads) {
+        std::size_t const n = surface.positions.size();
+        double const influence = process.influence > 0 ? process.influence : mean_edge;
+        square_.resize(n);
+        near_.find(water, surface.positions, influence, square_, threads);
+        mean_.resize(n);
+        normal_.resize(n);
+        process.estimator(surface, std::span<double>(mean_), threads);
+        tafoni::vertex_normals(surface, normal_, threads);
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        for (double const h : mean_) {
+            low = std::min(low, h);
+            high = std::max(high, h);
+        }
+        // Of one curvature everywhere: halfway between ridge and hollow.
+        double const width = high > low ? 1 / (high - low) : 0.0;
+        double const largest = std::max(std::fabs(low), std::fabs(high));
+        next.assign(surface.positions.begin(), surface.positions.end());
+        threads.for_blocks(n, vertex_grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                if (!(square_[v] <= influence * influence)) continue;
+                double const share = width > 0 ? (mean_[v] - low) * width : 0.5;
+                double const nearness = (influence - std::sqrt(square_[v])) / influence;
+                vec3 const p = surface.positions[v];
+                vec3 const way = direction(surface, v, largest > 0 ? mean_[v] / largest : 0.0);
+                double const strength = process.power == 1 ? share : share > 0 ? elementary::pow(share, process.power) : 0.0;
+                double const hard = std::max(process.durability(p), 1e-3);
+                double const d = std::min(strength / hard, 1.0) * most * nearness;
+                next[v] = vec3{p[0] + d * way[0], p[1] + d * way[1], p[2] + d * way[2]};
+            }
+        });
+    }
+
+private:
+    /// Equation 9.7 with the erratum: inward normal and unit Laplacian, without what would lead outwards.
+    [[nodiscard]] vec3 direction(surface_view const& surface, std::size_t v, double curvature) const {
+        vec3 const& p = surface.positions[v];
+        vec3 laplacian{0, 0, 0};
+        auto const around = surface.rings->neighbors(v);
+        for (std::uint32_t const w : around) laplacian += surface.positions[w] - p;
+        if (!around.empty()) laplacian /= static_cast<double>(around.size());
+        vec3 way = blended_direction{}.direction({.position = p, .laplacian = laplacian, .normal = normal_[v], .curvature = curvature});
+        double const out = tafoni::dot(way, normal_[v]);
+        if (out > 0) {
+            for (int a = 0; a < 3; ++a) way[a] -= out * normal_[v][a];
+        }
+        return way;
+    }
+
+    near_water near_{};
+    std::vector<double> square_{};
+    std::vector<double> mean_{};
+    std::vector<vec3> normal_{};
+};
+
+}  // namespace tafoni::detail
+
+#endif
