@@ -1,5 +1,8 @@
 #include "mesh_output.hpp"
 
+#include <tafoni/curvature/vertex_normals.hpp>
+#include <tafoni/geometry/vertex_rings.hpp>
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +27,15 @@ surface_mesh mesh_with(triangle_surface const& surface, std::vector<mesh_channel
     for (auto const& t : surface.triangles) {
         out.mesh.corners.insert(out.mesh.corners.end(), t.begin(), t.end());
         out.mesh.offsets.push_back(out.mesh.corners.size());
+    }
+    std::vector<vec3> normal(surface.positions.size());
+    vertex_rings const rings(surface.positions.size(), surface.triangles);
+    vertex_normals(surface_view{.positions = surface.positions, .triangles = surface.triangles, .rings = &rings}, normal);
+    char const* const names[3] = {"nx", "ny", "nz"};
+    for (int a = 0; a < 3; ++a) {
+        std::vector<double> along(normal.size());
+        for (std::size_t v = 0; v < along.size(); ++v) along[v] = normal[v][a];
+        channels.push_back(vertex_numbers(names[a], std::move(along)));
     }
     out.attributes.vertex_channels = std::move(channels);
     return out;

@@ -15,7 +15,7 @@ namespace weather {
 /// What was mended, on stderr.
 void tell_repairs(mesh_input const& input);
 
-/// The triangles with these numbers per vertex.
+/// The triangles with these numbers per vertex, and normals (nx, ny, nz), by which viewers shade smoothly.
 surface_mesh mesh_with(tafoni::triangle_surface const& surface, std::vector<tafoni::mesh_channel> channels);
 
 /// A channel of one number per vertex.
