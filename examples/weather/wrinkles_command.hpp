@@ -19,7 +19,7 @@ struct wrinkles_arguments {
     std::vector<std::string> paths;      ///< v,v,... each
     std::vector<std::string> through;    ///< x,y,z,x,y,z,... each: the nearest vertices
     std::vector<std::string> enlargements;
-    double radius = -1;                  ///< below 0: a fortieth of the longest side
+    double radius = -1;                  ///< below 0: a fortieth of the longest side, at least the mean edge
     double strength = std::numeric_limits<double>::quiet_NaN();  ///< unset: 1 for a fold, -1 for a groove
     std::string profile = "fold";
     std::uint32_t times = 1;

@@ -160,7 +160,7 @@ bool wrinkles_session::run() {
     }
     progress_.context().tick("read", 1);
     seconds_["read"] = watch.lap();
-    if (a_.radius < 0) a_.radius = input.size / 40;
+    if (a_.radius < 0) a_.radius = std::max(input.size / 40, input.mean_edge());
     auto const lines = wrinkles(input);
     auto const swellings = enlargements();
     progress_.context().tick("weather", 0);

@@ -86,6 +86,8 @@ expect 1 lone_vertex "$weather" wrinkles islands.obj -o none --path 0,3
 says lone_vertex "vertex 3 belongs to no triangle"
 expect 1 lone_centre "$weather" wrinkles islands.obj -o none --enlarge 3,1,1
 says lone_centre "vertex 3 belongs to no triangle"
+expect 0 coarse "$weather" wrinkles builtin:cube:squares=1 -o coarse --path 0,7 --progress none
+holds "$(number coarse volume_after) > 1" coarse
 expect 1 islands "$weather" wrinkles islands.obj -o none --path 1,5
 says islands "no edges lead from vertex 1 to vertex 5"
 [ ! -e none ] || complain "a refused run made its folder"
