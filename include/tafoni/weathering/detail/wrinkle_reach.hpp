@@ -53,7 +53,6 @@ struct reached_vertex {
             if (least[v] < 0 || d < least[v]) least[v] = d;
         };
         ask(a);
-        ask(b);
         for (std::size_t k = 0; k < front.size(); ++k) {
             for (std::uint32_t const w : rings.neighbors(front[k])) ask(w);
         }
