@@ -1,4 +1,4 @@
-# Running water: a stream that cuts a gorge (Figure 9.10 of the source), rain over a bust (Figure 9.9) and a terrain. Sourced by examples/run.sh.
+# Running water: a stream that cuts a gorge (Figure 9.10 of the source), rain over a bust (Figure 9.9) and a slope. Sourced by examples/run.sh.
 # shellcheck shell=sh disable=SC2154
 . "$root/examples/pictures/meshes.sh"
 
@@ -10,8 +10,11 @@ coarse=1
 part=1
 [ $small = no ] || { coarse=2; part=6; }
 
+# Clay that is dark in hollows and light on ridges.
+clay_map=$(colormap "#2b241d" "#6b6053" "#a89b89" "#cdc2b1" "#f6f0e4")
+
 # Before, after, and where water ran, from one camera.
-pour() { # name iterations view up range wettest labels options...
+pour() { # name iterations view|camera up range wettest labels options...
     name=$1
     steps=$2
     look=$3
@@ -27,9 +30,12 @@ pour() { # name iterations view up range wettest labels options...
     first=$shots/hydraulic_00000000
     final=$shots/hydraulic_$(printf '%08d' "$steps")
     range=$(over_side "$first.obj" "$most")
-    where=$(camera_of "$look" "$upwards" "$first.obj")
-    shoot "$first.vtp" "$first.png" "$where" "$upwards" curvature "$range"
-    shoot "$final.vtp" "$final.png" "$where" "$upwards" curvature "$range"
+    case $look in
+        --*) where=$look ;;
+        *) where=$(camera_of "$look" "$upwards" "$first.obj") ;;
+    esac
+    draw "$first.vtp" "$first.png" "$where" "$upwards" curvature "$range" "$clay_map" --up "$facing"
+    draw "$final.vtp" "$final.png" "$where" "$upwards" curvature "$range" "$clay_map" --up "$facing"
     shoot "$final.vtp" "$final.flow.png" "$where" "$upwards" flow "0,$wettest"
     box=$(seen_in "$first.png")
     caption "$first.png" "$box" "$before"
@@ -40,16 +46,18 @@ pour() { # name iterations view up range wettest labels options...
 
 facing=+Z
 mkdir -p "$results"
-pour gorge $((400 / part)) "1 -0.3 0.75" "0 0 1" 20 $((400 / part)) "a gorge" "cut by a stream" \
-    builtin:canyon:resolution=$((70 / coarse)) --particles $((5000 / coarse)) --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 \
-    --friction 1 --model curvature --step 1.2
+# Water with pressure, for it has to get out of the pools that it digs.
+pour gorge $((4000 / part)) "--camera-position=3.05,0.2,0.68 --camera-focal-point=1.1,0.53,0.12" "0 0 1" 45 $((8000 / part)) "a gorge" "cut by a stream" \
+    builtin:canyon:resolution=$((80 / coarse)) --fluid sph --particles $((6000 / coarse)) --radius 0.022 \
+    --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 --durability 0.04 --step 30
 
-model=builtin:bust:resolution=$((100 / coarse))
+model=builtin:bust:resolution=$((110 / coarse))
 look="0.5 -1 0.35"
 upwards="0 0 1"
-terrain=builtin:valley:resolution=$((80 / coarse)),fall=0.4
+terrain=builtin:valley:resolution=$((110 / coarse)),fall=0.5,depth=0.03
+over="--emitter 0.01,0.01,0.6,1.49,0.99,0.75"
 case $input in
-    *.asc | *.ASC) terrain=$input ;;
+    *.asc | *.ASC) terrain=$input; over="" ;;
     builtin:*) ;;
     *)
         model=$input
@@ -60,16 +68,14 @@ case $input in
         esac
         ;;
 esac
-pour bust $((400 / part)) "$look" "$upwards" 40 60 "a bust" "under rain" "$model" --up "$up" --particles $((6000 / coarse)) \
-    --model curvature --step 1 --friction 10
+pour bust $((900 / part)) "$look" "$upwards" 60 120 "a bust" "under rain" "$model" --up "$up" --particles $((6000 / coarse)) \
+    --durability 2 --step 40 --friction 6
 facing=+Z
-pour terrain $((300 / part)) "0.35 -1 1" "0 0 1" 40 $((400 / part)) "terrain" "under rain" "$terrain" --particles $((8000 / coarse)) --model curvature --step 1 --friction 4
 # shellcheck disable=SC2086
-legend "$results/bar.png" "curvature: hollow" ridge $bent
+pour terrain $((500 / part)) "0.8 -1 0.9" "0 0 1" 50 $((900 / part)) "a slope" "under rain" "$terrain" $over --particles $((8000 / coarse)) \
+    --durability 1.4 --step 20 --friction 12
 # shellcheck disable=SC2086
-legend "$results/wet.png" "water: none" much $wet
-convert "$results/bar.png" "$results/wet.png" -bordercolor white -border $((panel / 20))x0 -background white -gravity center \
-    +append "$results/bars.png"
+legend "$results/bars.png" "water: none" much $wet
 stack "$out/hydraulic.png" "$results/gorge.png" "$results/bust.png" "$results/terrain.png" "$results/bars.png"
 rm -f "$results"/*.png
 panel=$full
