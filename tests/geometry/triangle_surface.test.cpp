@@ -61,7 +61,7 @@ TEST_CASE("what is no surface of triangles is refused with its place") {
     r = refused([&] { (void)triangle_surface::copy_of(s); });
     CHECK(r.code == errc::index_out_of_range);
     CHECK(r.index == 1);
-    CHECK_THAT(r.text, Catch::Contains("vertex 3 of 3"));
+    CHECK_THAT(r.text, Catch::Contains("face 1 corner 2 is vertex 3 of 3"));
     r = refused([&] { s.validate(); });
     CHECK(r.code == errc::index_out_of_range);
     CHECK(r.index == 1);
