@@ -162,6 +162,61 @@ TEST_CASE("a drop hangs below what overhangs wholly where adhesion is more than 
     for (std::size_t i = 0; i < 20; ++i) CHECK(rain.id(i) >= 20);
 }
 
+TEST_CASE("a drop inside the rock comes out by half its radius a step, and rests at half of it") {
+    triangle_surface const ground = floor_at(0);
+    mesh_boundary const walls(ground.positions, ground.triangles, 0.2);
+    rain_particles rain({.box = between(vec3{0.3, 0.2, -0.15}, vec3{0.3, 0.2, -0.15})}, {.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 9})},
+                        {.particles = 1, .radius = 0.2, .lifetime = 1e6});
+    rain.step(walls, inline_executor{});
+    CHECK(rain.position(0)[2] == Approx(-0.05));
+    rain.step(walls, inline_executor{});
+    CHECK(rain.position(0)[2] == Approx(0.05));
+    rain.step(walls, inline_executor{});
+    for (int k = 0; k < 50; ++k) {
+        CHECK(rain.position(0)[2] == Approx(0.1));
+        rain.step(walls, inline_executor{});
+    }
+}
+
+TEST_CASE("between two walls the nearer one holds a drop") {
+    // A floor at 0 and a ceiling at 0.25, in both orders.
+    for (bool const ceiling_first : {false, true}) {
+        triangle_surface s{.positions = {vec3{-9, -9, 0}, vec3{9, -9, 0}, vec3{0, 9, 0}, vec3{-9, -9, 0.25}, vec3{9, -9, 0.25}, vec3{0, 9, 0.25}},
+                           .triangles = {{0, 1, 2}, {3, 5, 4}}};
+        if (ceiling_first) std::swap(s.triangles[0], s.triangles[1]);
+        mesh_boundary const walls(s.positions, s.triangles, 0.2);
+        for (double const from : {0.12, 0.14}) {
+            vec3 const at{0, -1, from};
+            rain_particles rain({.box = between(at, at)}, {.keep = between(vec3{-9, -9, -9}, vec3{9, 9, 9})},
+                                {.particles = 1, .radius = 0.2, .adhesion = 5, .largest_step = 0.01});
+            for (int k = 0; k < 40; ++k) rain.step(walls, inline_executor{});
+            CHECK(rain.position(0)[2] == Approx(from < 0.125 ? 0.1 : 0.15));
+        }
+    }
+}
+
+TEST_CASE("no drop moves farther than half its radius, and half of it towards the ground") {
+    triangle_surface const ball = sphere(3).mesh;
+    mesh_boundary const walls(ball.positions, ball.triangles, 0.1);
+    rain_particles rain({.box = between(vec3{-1, -1, 1}, vec3{1, 1, 3}), .velocity = vec3{0, 0, -4}}, {.keep = between(vec3{-2, -2, -2}, vec3{2, 2, 4})},
+                        {.particles = 60, .radius = 0.1, .adhesion = 3});
+    for (int k = 0; k < 200; ++k) {
+        double const dt = rain.step(walls, inline_executor{});
+        for (std::size_t i = 0; i < 60; ++i) REQUIRE(length(rain.velocity(i)) * dt <= 0.05 * 1.4143);
+    }
+}
+
+TEST_CASE("drops fall where the seed says") {
+    auto const at = [](std::uint64_t seed) {
+        rain_particles const rain({.box = between(vec3{0, 0, 0}, vec3{1, 1, 1})}, {.keep = between(vec3{0, 0, 0}, vec3{1, 1, 1})}, {.particles = 9, .seed = seed});
+        std::vector<vec3> all;
+        for (std::size_t i = 0; i < 9; ++i) all.push_back(rain.position(i));
+        return all;
+    };
+    CHECK(at(1) == at(1));
+    CHECK(at(1) != at(2));
+}
+
 TEST_CASE("threads change no bit of the rain", "[threads]") {
     triangle_surface const ground = floor_at(0.3);
     mesh_boundary const walls(ground.positions, ground.triangles, 0.3);

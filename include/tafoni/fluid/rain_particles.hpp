@@ -83,8 +83,8 @@ public:
     [[nodiscard]] double reach() const noexcept { return options_.radius; }
     [[nodiscard]] rain_options const& options() const noexcept { return options_; }
 
-    /// One step, in which no drop moves farther than half its radius along the way, nor longer than `largest_step`; or
-    /// a frame of such steps. O(particles x steps x faces near one).
+    /// One step, in which no drop falls or runs farther than half its radius and none comes nearer to the ground by more
+    /// than that, at most `largest_step` long; or a frame of such steps. O(particles x steps x faces near one).
     /// \throws invalid_input  `out_of_range` where a drop would take a million steps in a frame. The rain is as before
     /// then, and where the walls throw.
     template <fluid_boundary B, executor E>
@@ -178,9 +178,10 @@ private:
         for (drop const& d : drops_) square = std::max(square, squared_length(d.velocity));
         return std::sqrt(square);
     }
-    /// The step in which a drop of speed `v` moves by half the radius: that = v dt + g dt^2.
+    /// The step in which a drop of speed `v` moves by half the radius: that = v dt + g dt^2. What the ground pulls stops at
+    /// half the radius from it.
     [[nodiscard]] double stable(double v) const noexcept {
-        double const g = length(options_.gravity) + pull_;
+        double const g = length(options_.gravity);
         double const far = 0.5 * options_.radius;
         double const dt = v + g > 0 ? 2 * far / (v + std::sqrt(v * v + 4 * g * far)) : options_.largest_step;
         return std::min(dt, options_.largest_step);
