@@ -60,6 +60,7 @@ void estimate(benchmark::State& state, model const& m, std::size_t threads) {
         benchmark::DoNotOptimize(mean.data());
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mean.size()));
+    state.SetComplexityN(static_cast<benchmark::IterationCount>(mean.size()));
 }
 template <class Estimator>
 void on_bust(benchmark::State& state) { estimate<Estimator>(state, bust(), static_cast<std::size_t>(state.range(0))); }
@@ -162,13 +163,31 @@ void to_plain_loop(benchmark::State& state) {
     ratio<Estimator>(state, [&](model const& x) { return plain_loop(x.mesh, faces_at); });
 }
 
+/// The table of curvature/README.md: RMS and largest error in per cent of H.
+template <class Estimator>
+void error(benchmark::State& state) {
+    static char const* const names[] = {"icosphere 4", "icosphere 5", "icosphere 6", "torus", "jittered torus"};
+    auto const k = static_cast<int>(state.range(0));
+    tafoni_test::curved_surface const s =
+        k < 3 ? tafoni_test::sphere(4 + k) : tafoni_test::torus_surface(200, 80, k == 3 ? 0 : 0.25);
+    model const m(s.mesh);
+    std::vector<double> mean(s.mean.size());
+    for (auto _ : state) Estimator{}(m.view(), mean, inline_executor{});
+    auto const e = tafoni_test::error_of(s, mean);
+    state.counters["rms_percent"] = 100 * e.rms;
+    state.counters["largest_percent"] = 100 * e.largest;
+    state.SetLabel(names[k]);
+}
+
 #define TAFONI_BENCH_ESTIMATOR(estimator)                                                                   \
     BENCHMARK_TEMPLATE(on_bust, estimator)                                                                  \
         ->Name("curvature/" #estimator "/bust")->ArgName("threads")->Arg(1)->Arg(2)->Arg(4)                  \
         ->Unit(benchmark::kMillisecond)->UseRealTime();                                                     \
     BENCHMARK_TEMPLATE(on_ball, estimator)                                                                  \
         ->Name("curvature/" #estimator "/icosphere")->ArgName("level")->DenseRange(5, 7)                     \
-        ->Unit(benchmark::kMillisecond)
+        ->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);                                         \
+    BENCHMARK_TEMPLATE(error, estimator)                                                                    \
+        ->Name("curvature/" #estimator "/error")->ArgName("surface")->DenseRange(0, 4)->Iterations(1)
 
 TAFONI_BENCH_ESTIMATOR(tensor_fit);
 TAFONI_BENCH_ESTIMATOR(cotangent);

@@ -186,7 +186,14 @@ TEST_CASE("a step that makes triangles cut each other is taken back and halved, 
     CHECK(self_intersections(careful.surface().positions, s.triangles).empty());
 
     before = 0;
+    std::uint64_t ticks = 0;
+    context.on_progress = [&, check = context.on_progress](progress_event const& e) {
+        ++ticks;
+        return check(e);
+    };
     curvature_report const last = careful.run(100, context);  // the punch comes through in the end
+    // No step back loses more than the iteration that went wrong; the start ticks too, the end for good does not.
+    CHECK(ticks == last.iterations - once.iterations + last.retries - once.retries);
     CHECK(last.stopped == curvature_stop::self_intersection);
     CHECK(last.retries == 7);
     CHECK(self_intersections(careful.surface().positions, s.triangles).empty());

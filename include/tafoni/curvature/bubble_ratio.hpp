@@ -101,7 +101,9 @@ private:
 struct bubble_ratio {
     double radius = 0;  ///< of the ball, length unit, >= 0; 0 means three mean edges
 
-    /// O(vertices x triangles in a ball), about 7 us per vertex by default. \throws invalid_input  bad_parameter.
+    /// O(vertices x triangles in a ball), about 7 us per vertex by default; quadratic where one ball holds most of a mesh.
+    /// \throws invalid_input  `bad_parameter` for the radius or other rings, `attribute_length` for other than one number
+    ///         per vertex.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         detail::require_one_per_vertex("bubble_ratio", s, mean.size());

@@ -96,6 +96,7 @@ struct faces_cotangents {
 /// neighbours' values, or 0. Models `curvature_estimator`.
 struct cotangent {
     /// O(vertices + faces); 64 bytes of scratch memory per vertex, or 48 per face with several threads.
+    /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         detail::require_one_per_vertex("cotangent", s, mean.size());

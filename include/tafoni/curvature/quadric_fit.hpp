@@ -86,7 +86,9 @@ private:
 /// methods of one ring: see the table in curvature/README.md. Works at the border of open meshes.
 /// Models `curvature_estimator`.
 struct quadric_fit {
-    /// O(vertices x neighbours of two rings), about 0.5 us per vertex; 24 bytes of scratch memory per vertex.
+    /// O(vertices x neighbours of two rings), about 0.6 us per vertex; 24 bytes of scratch memory per vertex. A neighbour
+    /// of more than 256 neighbours leads to no second ring.
+    /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         detail::require_one_per_vertex("quadric_fit", s, mean.size());

@@ -66,6 +66,7 @@ struct weighted_face_normals {
 
 struct vertex_normals_fn {
     /// `normals` has one entry per vertex. O(vertices + faces); 48 bytes of scratch memory per face with several threads.
+    /// \throws invalid_input  `attribute_length` for other than one normal per vertex, `bad_parameter` for other rings.
     template <executor E = inline_executor>
     void operator()(surface_view const& s, std::span<vec3> normals, E const& executor = {}) const {
         require_one_per_vertex("vertex_normals", s, normals.size());

@@ -87,26 +87,30 @@ template <class Sum, executor E>
     return std::vector<Sum>(executor.thread_count() <= 1 ? s.positions.size() : 0);
 }
 
-/// What a border vertex takes where an estimator says nothing there; 0 without inner neighbours.
-[[nodiscard]] inline double mean_of_inner_neighbors(surface_view const& s, std::span<double const> mean, std::size_t v) noexcept {
-    double sum = 0;
-    double inner = 0;
-    for (std::uint32_t const w : s.rings->neighbors(v)) {
-        if (s.rings->is_border(w)) continue;
-        sum += mean[w];
-        inner += 1;
-    }
-    return inner > 0 ? sum / inner : 0.0;
-}
-
-/// `mean_of_inner_neighbors` at every border vertex. O(vertices).
+/// At every border vertex the mean of its inner neighbours; without any, that of the border vertices beside it that have
+/// some; without those, what stands there stays. O(vertices).
 template <executor E>
 void fill_border(surface_view const& s, std::span<double> mean, E const& executor) {
-    executor.for_blocks(mean.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            if (s.rings->is_border(v)) mean[v] = mean_of_inner_neighbors(s, mean, v);
-        }
-    });
+    std::vector<unsigned char> filled(mean.size(), 0);
+    auto const round = [&](auto const& mean_of, bool first) {
+        executor.for_blocks(mean.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                if (!s.rings->is_border(v) || filled[v] != 0) continue;
+                double sum = 0;
+                double count = 0;
+                for (std::uint32_t const w : s.rings->neighbors(v)) {
+                    if (!mean_of(w)) continue;
+                    sum += mean[w];
+                    count += 1;
+                }
+                if (!(count > 0)) continue;
+                mean[v] = sum / count;
+                if (first) filled[v] = 1;
+            }
+        });
+    };
+    round([&](std::uint32_t w) { return !s.rings->is_border(w); }, true);
+    round([&](std::uint32_t w) { return filled[w] != 0; }, false);
 }
 
 }  // namespace tafoni::detail
