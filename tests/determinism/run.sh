@@ -1,14 +1,15 @@
 #!/bin/sh
 # Builds the golden program with both compilers at three levels, and with AVX2 where the CPU has it; all must
 # print tests/determinism/golden.txt.
-#   sh tests/determinism/run.sh BUILD_DIR [JOBS] [--accept]
+#   sh tests/determinism/run.sh BUILD_DIR [JOBS] [--accept | --ends]
+#   --ends     only without optimisation and with all of it
 #   --accept   when all variants agree with each other, their answer becomes golden.txt (say why in the commit)
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 out=$1
 jobs=${2:-$(nproc)}
-accept=${3:-}
+choice=${3:-}
 mkdir -p "$out"
 rm -f "$out"/*.txt
 
@@ -16,6 +17,7 @@ levels="-O0 -O2 -O3"
 if grep -q -w avx2 /proc/cpuinfo && grep -q -w fma /proc/cpuinfo; then
     levels="$levels -O3,-mavx2,-mfma"
 fi
+[ "$choice" = --ends ] && levels="-O0 ${levels##* }"
 
 for compiler in g++ clang++-19; do
     for level in $levels; do
@@ -30,7 +32,7 @@ done | ROOT=$root OUT=$out xargs -P "$jobs" -n 2 sh -c '
         mv "$OUT/$name.part" "$OUT/$name.txt"'
 
 golden=$here/golden.txt
-[ "$accept" = --accept ] && golden=$out/g++-O2.txt
+[ "$choice" = --accept ] && golden=$out/g++-O2.txt
 status=0
 for compiler in g++ clang++-19; do
     for level in $levels; do
@@ -46,7 +48,7 @@ for compiler in g++ clang++-19; do
         fi
     done
 done
-if [ "$accept" = --accept ] && [ $status -eq 0 ]; then
+if [ "$choice" = --accept ] && [ $status -eq 0 ]; then
     cp "$golden" "$here/golden.txt"
 fi
 exit $status
