@@ -33,6 +33,7 @@
 #include <tafoni/weathering/curvature_run.hpp>
 #include <tafoni/weathering/frost_presets.hpp>
 #include <tafoni/weathering/frost_run.hpp>
+#include <tafoni/weathering/hydraulic_run.hpp>
 #include <tafoni/weathering/weathered_voxels.hpp>
 #include <tafoni/weathering/wrinkles.hpp>
 
@@ -424,6 +425,28 @@ void rain(fingerprint& f) {
     add_fluid(f, framed);
 }
 
+template <class Run>
+void add_water_wear(fingerprint& f, Run const& run) {
+    add_surface(f, run.surface());
+    for (double const w : run.wear()) f.add(w);
+    for (double const v : run.sediment()) f.add(v);
+    for (auto const n : run.flow()) f.add(n);
+    f.add(run.report().ledger.eroded);
+}
+void worn_by_shear(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    tafoni::hydraulic_run run(dented(3), shower(), tafoni::partheniades_erosion{.coefficient = 1e-4, .critical = 2, .exponent = 1.5, .power = 0.7},
+                              {.refine_length = 0.12});
+    run.run(60, {}, pool);
+    add_water_wear(f, run);
+}
+void worn_by_curvature_and_water(fingerprint& f) {
+    tafoni::thread_pool const pool(3);
+    tafoni::hydraulic_run run(dented(3), shower(), tafoni::curvature_erosion<>{.power = 1.5, .influence = 0.2});
+    run.run(60, {}, pool);
+    add_water_wear(f, run);
+}
+
 }  // namespace
 
 int main() {
@@ -450,4 +473,6 @@ int main() {
     print("water_double", water<double>);
     print("water_by_frames", water_by_frames);
     print("rain", rain);
+    print("worn_by_shear", worn_by_shear);
+    print("worn_by_curvature_and_water", worn_by_curvature_and_water);
 }
