@@ -1,10 +1,23 @@
 #include "support/curved_surfaces.hpp"
+#include "support/test_data.hpp"
 
+#include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
+#include <tafoni/geometry/terrain_solid.hpp>
+#include <tafoni/io/esri_ascii.hpp>
+#include <tafoni/io/read_mesh.hpp>
+#include <tafoni/repair/collapse_short_edges.hpp>
+#include <tafoni/voxel/isosurface.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
 #include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <vector>
 
 using namespace tafoni;
 using namespace tafoni_test;
@@ -36,6 +49,75 @@ struct river {
     double reach() const { return 0.3; }
     double step(fluid_boundary auto const&, executor auto const&) { return 0.1; }
 };
+
+/// Faces that look down.
+std::size_t overhanging(triangle_surface const& s) {
+    std::size_t n = 0;
+    for (auto const& t : s.triangles) {
+        vec3 const w = normalized(cross(vec3{s.positions[t[1]] - s.positions[t[0]]}, vec3{s.positions[t[2]] - s.positions[t[0]]}));
+        n += w[2] < -0.15 ? 1U : 0U;
+    }
+    return n;
+}
+/// A trough along x with walls that stand at y = -1 and 1.
+triangle_surface trough(std::uint32_t n, std::uint32_t m, double fall) {
+    return parametric(
+               n, m, false, false, 0,
+               [=](double u, double v) {
+                   double const t = 12 * v - 6;  // down one wall, over the bed, up the other
+                   double const a = std::clamp(t, -1.0, 1.0);
+                   return vec3{10 * u, a, (std::fabs(t) > 1 ? std::fabs(t) - 1 : 0.0) - fall * u};
+               },
+               [](double, double) { return 0.0; })
+        .mesh;
+}
+
+/// The middle of the tunnel at x.
+double axis_at(double x) { return 1.9 - 0.1 * x; }
+/// A block of rock, 8 x 3 x 3, that a round tunnel of radius 0.7 falls through along x [thesis, figure 8.6].
+triangle_surface pierced_block() {
+    grid_frame frame;
+    double const cell = 0.2;
+    frame.size = {43, 18, 18};
+    for (Eigen::Index a = 0; a < 3; ++a) {
+        frame.spacing[a] = cell;
+        frame.origin[a] = -cell - 0.01;
+    }
+    indexed_mesh const raw = isosurface(
+        [](vec3 const& p) -> double {
+            double inside = 1e9;
+            vec3 const hi{8, 3, 3};
+            for (int a = 0; a < 3; ++a) inside = std::min({inside, p[a], hi[a] - p[a]});
+            double const y = p[1] - 1.5;
+            double const z = p[2] - axis_at(p[0]);
+            return std::min(inside, std::sqrt(y * y + z * z) - 0.7);
+        },
+        frame, 0);
+    triangle_surface s = triangles_of(raw);
+    collapse_short_edges(s, 0.4 * cell);
+    return s;
+}
+
+triangle_surface terrain(std::filesystem::path const& path) { return triangles_of(detail::terrain_top(read_esri_ascii(path))); }
+box3 bounds_of(triangle_surface const& s) {
+    box3 b;
+    for (vec3 const& p : s.positions) b.include(p);
+    return b;
+}
+/// Rain over all of a terrain but its rim, with gravity and stresses by its size as the tool scales them.
+auto rained_on(triangle_surface const& s, std::uint32_t drops, double friction) {
+    box3 const b = bounds_of(s);
+    double const size = std::max(b.hi[0] - b.lo[0], b.hi[1] - b.lo[1]);
+    double const edge = s.mean_edge_length();
+    double const rim = 4 * edge;
+    double const fall = std::sqrt(0.1);
+    double const stress = std::sqrt(10.0) * size / edge;
+    rain_particles const rain({.box = between({b.lo[0] + rim, b.lo[1] + rim, b.hi[2] + edge}, {b.hi[0] - rim, b.hi[1] - rim, b.hi[2] + 3 * edge})},
+                              {.keep = between({b.lo[0] + 2 * edge, b.lo[1] + 2 * edge, b.lo[2] - size}, {b.hi[0] - 2 * edge, b.hi[1] - 2 * edge, b.hi[2] + size})},
+                              {.particles = drops, .radius = edge, .gravity = vec3{0, 0, -10 * size}, .friction = friction,
+                               .largest_step = 0.1 * fall, .lifetime = 15 * fall});
+    return hydraulic_run(s, rain, partheniades_erosion{.coefficient = 0.015 * size / (fall * stress), .critical = 0.1 * stress});
+}
 
 }  // namespace
 
@@ -119,6 +201,17 @@ TEST_CASE("a lake that overflows erodes its spillway and not the other rim", "[s
     double lowest = 0;
     for (std::size_t v = 0; v < s.positions.size(); ++v) lowest = std::min(lowest, run.surface().positions[v][2] - s.positions[v][2]);
     CHECK(lowest < 0);
+    // The outlet is cut: the sill that the water went over is lower.
+    double sill = 0;
+    double n = 0;
+    for (std::size_t v = 0; v < s.positions.size(); ++v) {
+        vec3 const p = s.positions[v];
+        if (p[0] < 6.7 || p[0] > 7.3 || std::fabs(p[1] - 5) > 0.6) continue;
+        sill += run.surface().positions[v][2] - p[2];
+        ++n;
+    }
+    CHECK(sill / n < 0);
+    CHECK(run.surface().positions.size() == s.positions.size());
 }
 
 TEST_CASE("a hard layer stands out over a soft one that water falls along") {
@@ -144,15 +237,8 @@ TEST_CASE("a hard layer stands out over a soft one that water falls along") {
 
 TEST_CASE("a canyon's walls are undercut at the water, and stand above it") {
     // A channel that curvature erosion widens where particles are: low on the walls [thesis, figure 9.10].
-    triangle_surface const canyon = parametric(
-                                        41, 49, false, false, 0,
-                                        [](double u, double v) {
-                                            double const t = 12 * v - 6;  // down one wall, over the bed, up the other
-                                            double const a = std::clamp(t, -1.0, 1.0);
-                                            return vec3{10 * u, a, std::fabs(t) > 1 ? std::fabs(t) - 1 : 0.0};
-                                        },
-                                        [](double, double) { return 0.0; })
-                                        .mesh;
+    triangle_surface const canyon = trough(41, 49, 0);
+    REQUIRE(overhanging(canyon) == 0);
     hydraulic_run run(canyon, river{}, curvature_erosion<>{});
     run.run(15);
     double deepest = 0;
@@ -166,5 +252,172 @@ TEST_CASE("a canyon's walls are undercut at the water, and stand above it") {
         }
     }
     CHECK(deepest > 0.1);  // under the wall above, which still stands at 1
+    CHECK(overhanging(run.surface()) > 20);
     CHECK(run.balanced());
+}
+
+TEST_CASE("water at the foot of a wall undercuts it by its shear stress too") {
+    triangle_surface const canyon = trough(41, 49, 0);
+    hydraulic_run run(canyon, river{}, partheniades_erosion{.coefficient = 2e-3, .critical = 1});
+    run.run(40);
+    CHECK(run.balanced());
+    CHECK(overhanging(run.surface()) > 20);
+    double foot = 0;
+    for (std::size_t v = 0; v < canyon.positions.size(); ++v) {
+        vec3 const q = canyon.positions[v];
+        if (q[2] > 0.2 && q[2] < 0.8) foot = std::max(foot, std::fabs(run.surface().positions[v][1]) - 1);
+        if (q[2] > 2.5) CHECK(run.surface().positions[v] == q);
+    }
+    CHECK(foot > 0.1);
+}
+
+TEST_CASE("a river with pressure undercuts the walls of its canyon", "[slow]") {
+    triangle_surface const canyon = trough(41, 49, 0.8);
+    sph<float> const water({.box = between(vec3{0.4, -0.7, 0.2}, vec3{1.6, 0.7, 1.0}), .velocity = vec3{4, 0, 0}},
+                           {.keep = between(vec3{0.3, -2.5, -4}, vec3{9.7, 2.5, 4})},
+                           {.particles = 1500, .spacing = 0.2, .sound_speed = 30, .damping = 0.2, .frame = 0.02});
+    hydraulic_run run(canyon, water, partheniades_erosion{.coefficient = 2e-3, .critical = 3});
+    run.run(250);
+    CHECK(run.balanced());
+    CHECK(run.report().ledger.eroded > 0);
+    CHECK(overhanging(run.surface()) > 10);
+    for (std::size_t v = 0; v < canyon.positions.size(); ++v) {
+        if (canyon.positions[v][2] > 3.5) CHECK(run.surface().positions[v] == canyon.positions[v]);  // what stays dry stands
+    }
+}
+
+TEST_CASE("a stream enlarges the tunnel that it runs through, and leaves the roof alone") {
+    triangle_surface const block = pierced_block();
+    rain_particles const water({.box = between(vec3{0.3, 1.2, 1.5}, vec3{0.8, 1.8, 1.9}), .velocity = vec3{3, 0, 0}},
+                               {.keep = between(vec3{0.1, 0, 0}, vec3{7.8, 3, 3})},
+                               {.particles = 400, .radius = 0.25, .friction = 1, .adhesion = 0, .lifetime = 6});
+    hydraulic_run run(block, water, partheniades_erosion{.coefficient = 1e-3, .critical = 3});
+    run.run(300);
+    CHECK(run.balanced());
+    double floor = 0;
+    double floors = 0;
+    for (std::size_t v = 0; v < block.positions.size(); ++v) {
+        vec3 const p = block.positions[v];
+        double const y = p[1] - 1.5;
+        double const z = p[2] - axis_at(p[0]);
+        if (p[0] < 1 || p[0] > 7 || y * y + z * z > 0.8 * 0.8) continue;
+        if (z > 0.45) {
+            CHECK(run.wear()[v] == 0);
+        } else if (z < -0.45) {
+            double const then = run.surface().positions[v][2] - axis_at(run.surface().positions[v][0]);
+            floor += z - then;
+            ++floors;
+        }
+    }
+    REQUIRE(floors > 20);
+    CHECK(floor / floors > 0.03);  // of a radius of 0.7: the section grows
+    auto const six = [](triangle_surface const& s) {
+        double sum = 0;
+        for (auto const& t : s.triangles) sum += dot(s.positions[t[0]], cross(s.positions[t[1]], s.positions[t[2]]));
+        return sum;
+    };
+    CHECK((six(block) - six(run.surface())) / 6 == Approx(run.report().ledger.eroded - run.report().ledger.deposited).epsilon(1e-9));
+}
+
+TEST_CASE("rain gathers in the valleys of a real ridge and wears them", "[slow]") {
+    auto const path = find("dems/bigtujunga_ridge128_30m.asc");
+    if (path.empty()) {
+        WARN("skipped: no data");
+        return;
+    }
+    triangle_surface const s = terrain(path);
+    auto run = rained_on(s, 3000, 6);
+    run.run(150);
+    CHECK(run.balanced());
+    CHECK(run.report().ledger.eroded > 0);
+    std::vector<double> const bent = estimate_curvature(s);
+    double hollows = 0;
+    double ridges = 0;
+    double wear_hollows = 0;
+    double wear_ridges = 0;
+    for (std::size_t v = 0; v < bent.size(); ++v) {
+        (bent[v] < 0 ? hollows : ridges) += 1;
+        (bent[v] < 0 ? wear_hollows : wear_ridges) += run.wear()[v];
+    }
+    CHECK(wear_hollows / hollows > 1.3 * wear_ridges / ridges);
+    // Most is worn where most water ran.
+    std::vector<std::size_t> order(bent.size());
+    for (std::size_t v = 0; v < order.size(); ++v) order[v] = v;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return run.flow()[a] > run.flow()[b]; });
+    double whole = 0;
+    double wet = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        whole += run.wear()[order[k]];
+        if (k < order.size() / 10) wet += run.wear()[order[k]];
+    }
+    CHECK(wet > 0.3 * whole);
+}
+
+TEST_CASE("water wears the bed and the banks that it runs along in a real valley, and nothing else", "[slow]") {
+    auto const path = find("dems/stubai_10m.asc");
+    if (path.empty()) {
+        WARN("skipped: no data");
+        return;
+    }
+    // A piece of the valley, 80 x 80 nodes.
+    height_grid const all = read_esri_ascii(path);
+    height_grid g{.columns = 80, .rows = 80, .cell_size_x = all.cell_size_x, .cell_size_y = all.cell_size_y};
+    for (std::size_t r = 0; r < g.rows; ++r) {
+        for (std::size_t c = 0; c < g.columns; ++c) g.heights.push_back(all.heights[(r + 40) * all.columns + c + 40]);
+    }
+    triangle_surface const s = triangles_of(detail::terrain_top(g));
+    auto run = rained_on(s, 3000, 4);
+    run.run(150);
+    CHECK(run.balanced());
+    CHECK(run.report().ledger.eroded > 0);
+    // What no drop came near stands as it was.
+    vertex_rings const rings(s.positions.size(), s.triangles);
+    std::size_t dry = 0;
+    for (std::size_t v = 0; v < s.positions.size(); ++v) {
+        bool away = run.flow()[v] == 0;
+        for (std::uint32_t const w : rings.neighbors(v)) {
+            away = away && run.flow()[w] == 0;
+            for (std::uint32_t const x : rings.neighbors(w)) away = away && run.flow()[x] == 0;
+        }
+        if (!away) continue;
+        ++dry;
+        CHECK(run.surface().positions[v] == s.positions[v]);
+    }
+    CHECK(dry > 0);
+}
+
+TEST_CASE("water poured over a statue runs down it", "[slow]") {
+    auto const path = find("meshes/nefertiti_35k.ply");
+    if (path.empty()) {
+        WARN("skipped: no data");
+        return;
+    }
+    triangle_surface const s = triangles_of(read_mesh(path).mesh);
+    box3 const b = bounds_of(s);
+    vec3 const e = b.extent();
+    double const size = std::max({e[0], e[1], e[2]});
+    double const edge = s.mean_edge_length();
+    double const stress = std::sqrt(10.0) * size / edge;
+    double const fall = std::sqrt(0.1);
+    rain_particles const water({.box = between({b.lo[0] + 0.3 * e[0], b.lo[1] + 0.3 * e[1], b.hi[2] + edge}, {b.hi[0] - 0.3 * e[0], b.hi[1] - 0.3 * e[1], b.hi[2] + 4 * edge})},
+                               {.keep = between({b.lo[0] - 9 * edge, b.lo[1] - 9 * edge, b.lo[2] - 9 * edge}, {b.hi[0] + 9 * edge, b.hi[1] + 9 * edge, b.hi[2] + 9 * edge})},
+                               {.particles = 3000, .radius = edge, .gravity = vec3{0, 0, -10 * size}, .friction = 6, .largest_step = 0.1 * fall});
+    hydraulic_run run(s, water, partheniades_erosion{.coefficient = 0.005 * size / (fall * stress), .critical = 0.1 * stress});
+    run.run(200);
+    CHECK(run.balanced());
+    auto const six = [](triangle_surface const& m) {
+        double sum = 0;
+        for (auto const& t : m.triangles) sum += dot(m.positions[t[0]], cross(m.positions[t[1]], m.positions[t[2]]));
+        return sum;
+    };
+    auto const& l = run.report().ledger;
+    CHECK((six(s) - six(run.surface())) / 6 == Approx(l.eroded - l.deposited).epsilon(1e-6));
+    std::array<std::uint64_t, 4> flow{};
+    for (std::size_t v = 0; v < s.positions.size(); ++v) {
+        auto const quarter = std::min(3.0, 4 * (s.positions[v][2] - b.lo[2]) / e[2]);
+        flow[static_cast<std::size_t>(quarter)] += run.flow()[v];
+    }
+    CHECK(flow[3] > 0);  // the crown
+    CHECK(flow[2] > 0);
+    CHECK(flow[1] > 0);  // the neck
 }

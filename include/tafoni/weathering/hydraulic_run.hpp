@@ -191,7 +191,7 @@ private:
         if constexpr (exchange_rule<Process>) {
             books_.left += gone;
             std::swap(books_.load, loads_now_);
-            settle_(moving(), moves_, unit_, most, books_, wear_, sediment_);
+            settle_(moving(), moves_, exchange_, unit_, most, books_, wear_, sediment_);
         } else {
             detail::follow(moving(), next_, moves_, most);
             book_difference();

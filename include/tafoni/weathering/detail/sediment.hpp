@@ -95,6 +95,8 @@ public:
             in_share_[v] = share(cap - std::max<std::int64_t>(books.due[v], 0), in_[v]);
         }
     }
+    /// Whether particles asked the vertex for something, or offered it.
+    [[nodiscard]] bool asked(std::size_t v) const noexcept { return out_[v] != 0 || in_[v] != 0; }
     /// What of a corner's part is granted: of its sign, and no more.
     [[nodiscard]] std::int64_t grant(std::uint32_t vertex, std::int64_t part) const noexcept {
         float const share = (part > 0 ? out_share_ : in_share_)[vertex];
@@ -120,17 +122,18 @@ class sediment_settlement {
 public:
     /// One vertex after the other, by number, along the sum of the normals of its faces weighted by area, in which
     /// direction the volume changes fastest; no farther than `most` and its `vertex_room`. A move that is not sound is
-    /// halved, twice at most, then left. Before vertices move, and of what then stays due, half goes to the neighbours
-    /// by area: a particle wears more than the face below it, and no vertex is dug out alone. Books what the surface
+    /// halved, twice at most, then left. Before vertices move half of what is due goes to the neighbours by area: a
+    /// particle wears more than the face below it, and no vertex is dug out alone. Of what then stays due half goes to
+    /// those neighbours that particles asked too, so that what is two edges from the water stays as it is. Books what the surface
     /// really changed by; adds the way to `wear` and the volume to `sediment`.
     /// O(vertices + faces at those that owe).
-    void operator()(moving_surface const& s, sound_moves& moves, volume_unit const& unit, double most, sediment_books& books,
+    void operator()(moving_surface const& s, sound_moves& moves, sediment_exchange const& asked, volume_unit const& unit, double most, sediment_books& books,
                     std::span<double> wear, std::span<std::int64_t> sediment) {
         left_.clear();
         for (std::size_t v = 0; v < books.due.size(); ++v) {
-            if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
+            if (books.due[v] != 0 && asked.asked(v)) left_.push_back(static_cast<std::uint32_t>(v));
         }
-        pass_on(s, moves, books);
+        pass_on(s, moves, books, [](std::uint32_t) { return true; });
         left_.clear();
         for (std::size_t v = 0; v < books.due.size(); ++v) {
             if (books.due[v] == 0) continue;
@@ -159,12 +162,13 @@ public:
             }
             if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
         }
-        pass_on(s, moves, books);
+        pass_on(s, moves, books, [&](std::uint32_t v) { return asked.asked(v); });
     }
 
 private:
     /// Half of what `left_` owe or are owed to the other corners of their faces, by area.
-    void pass_on(moving_surface const& s, sound_moves const& moves, sediment_books& books) {
+    template <class To>
+    void pass_on(moving_surface const& s, sound_moves const& moves, sediment_books& books, To const& to) {
         passed_.clear();
         for (std::uint32_t const v : left_) {
             double whole = 0;
@@ -175,10 +179,12 @@ private:
             for (auto const& c : s.rings.faces(v)) {
                 auto const part = static_cast<std::int64_t>(each * moves.twice_area(c.face));
                 if (part == 0) continue;
-                auto const& t = s.triangles[c.face];
-                passed_.emplace_back(t[(c.place + 1) % 3], part);
-                passed_.emplace_back(t[(c.place + 2) % 3], part);
-                gone += 2 * part;
+                for (std::uint32_t k = 1; k < 3; ++k) {
+                    std::uint32_t const w = s.triangles[c.face][(c.place + k) % 3];
+                    if (!to(w)) continue;
+                    passed_.emplace_back(w, part);
+                    gone += part;
+                }
             }
             books.due[v] -= gone;
         }
