@@ -324,6 +324,56 @@ TEMPLATE_TEST_CASE("a wall pushes by the stiffness times the penetration less th
     CHECK(f.position(0)[2] == Approx(0.3 + dt * f.velocity(0)[2]).epsilon(1e-6));
 }
 
+TEMPLATE_TEST_CASE("viscosity slows a shear flow by nu times its second derivative", "", float, double) {
+    auto all = cloud(13, 1, 0);
+    for (fluid_particle& p : all) p.velocity = vec3{0.5 * (p.position[1] - 6) * (p.position[1] - 6), 0, 0};
+    for (double const nu : {0.5, 2.0}) {
+        auto f = placed<TestType>(all, {.spacing = 1, .smoothing = 1.3, .sound_speed = 500, .viscosity = nu, .damping = 0, .gravity = vec3{0, 0, 0}});
+        double const dt = f.step(open_space{}, inline_executor{});
+        CHECK(f.velocity(6 + 13 * (6 + 13 * 6))[0] == Approx(nu * dt).epsilon(0.15));  // of a lattice's sum
+    }
+}
+
+TEST_CASE("speed of sound and walls follow from gravity and emitters where they are not given") {
+    triangle_surface const ground{.positions = {vec3{-9, -9, 0}, vec3{9, -9, 0}, vec3{0, 9, 0}}, .triangles = {{0, 1, 2}}};
+    auto f = placed<double>({{.id = 0, .position = vec3{0, 0, 0.3}, .velocity = vec3{0, 0, -2}}}, {.spacing = 0.5});
+    double const c = 10 * std::sqrt(2 * 9.81 * 16 * 0.5);
+    CHECK(f.sound_speed() == Approx(c));
+    CHECK(f.reach() == 0.5);
+    mesh_boundary const walls(ground.positions, ground.triangles, f.reach());
+    double const dt = f.step(walls, inline_executor{});
+    double const pace = c / (5 * 0.5);
+    CHECK(f.velocity(0)[2] == Approx(-2 + dt * (pace * pace * 0.2 + pace * 2 - 9.81)));
+    box_emitter const fast{.box = between(vec3{0, 0, 0}, vec3{1, 1, 1}), .velocity = vec3{0, 30, -40}};
+    CHECK(sph<double>(fast, everywhere(), {.spacing = 0.5}).sound_speed() == Approx(500));
+    CHECK(sph<double>(fast, everywhere(), {.spacing = 1, .gravity = vec3{0, 0, 0}, .toward = -1250}).sound_speed() == Approx(2000));
+}
+
+TEMPLATE_TEST_CASE("gravity acts on all of many particles, and what stays when others go keeps what it is", "", float, double) {
+    std::vector<fluid_particle> apart;
+    for (std::uint64_t k = 0; k < 2100; ++k) apart.push_back({.id = k, .position = vec3{5.0 * static_cast<double>(k % 50), 5.0 * static_cast<double>(k / 50), 0}});
+    auto many = placed<TestType>(apart, {.spacing = 1});
+    double const dt = many.step(open_space{}, inline_executor{});
+    for (std::size_t i = 0; i < 2100; ++i) REQUIRE(many.velocity(i)[2] == Approx(-9.81 * dt));
+
+    // A pair behind one that leaves.
+    sph<TestType> left(std::vector<box_emitter>{}, {.keep = between(vec3{-1, -1, -1}, vec3{9, 1, 1})}, {.particles = 3, .spacing = 1, .sound_speed = 10, .gravity = vec3{0, 0, 0}});
+    left.place(std::vector<fluid_particle>{{.id = 0, .position = vec3{-1, 0, 0}, .velocity = vec3{-9, 0, 0}},
+                                           {.id = 1, .position = vec3{5, 0, 0}, .velocity = vec3{0, 1, 0}},
+                                           {.id = 2, .position = vec3{5.5, 0, 0}, .velocity = vec3{0, 1, 0}}});
+    left.step(open_space{}, inline_executor{});
+    REQUIRE(left.particle_count() == 2);
+    CHECK(left.id(0) == 1);
+    CHECK(left.position(0)[0] == Approx(5));
+    CHECK(left.velocity(0)[1] == Approx(1));
+    CHECK(left.density(0) > 1.1 * many.density(0));
+
+    sph<TestType> sent({.box = between(vec3{0, 0, 0}, vec3{1, 1, 0}), .velocity = vec3{4, 5, 6}}, everywhere(), {.spacing = 1, .gravity = vec3{0, 0, 0}});
+    sent.step(open_space{}, inline_executor{});
+    REQUIRE(sent.particle_count() == 4);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(length(sent.velocity(i) - vec3{4, 5, 6}) < 1e-5);
+}
+
 TEMPLATE_TEST_CASE("the step keeps to its limits", "", float, double) {
     sph_options const o{.spacing = 0.5, .sound_speed = 40, .damping = 0, .gravity = vec3{0, 0, 0}, .courant = 0.25};
     auto at_rest = placed<TestType>({{.id = 0}}, o);
