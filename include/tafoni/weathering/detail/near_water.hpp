@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -56,7 +57,8 @@ private:
         for (int d = 0; d < 3; ++d) size_[static_cast<std::size_t>(d)] = static_cast<std::size_t>(along(d));
     }
     [[nodiscard]] std::int64_t place(int d, double x) const noexcept {
-        return static_cast<std::int64_t>(std::clamp(std::floor((x - lo_[d]) * inverse_), -2.0, 0x1p40));
+        // Positive before it is cut to a whole number: this is faster than floor where that is a call.
+        return static_cast<std::int64_t>(std::clamp((x - lo_[d]) * inverse_, -2.0, 0x1p40) + 2) - 2;
     }
     [[nodiscard]] std::size_t cell_of(vec3 const& p) const noexcept {
         std::array<std::size_t, 3> c{};
