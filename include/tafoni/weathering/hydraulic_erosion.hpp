@@ -109,7 +109,8 @@ template <class P>
 concept hydraulic_process = exchange_rule<P> || detail::is_curvature_erosion<P>;
 
 struct hydraulic_options {
-    double step_divisor = 10;       ///< no vertex moves farther in an iteration than the mean edge over this; >= 1
+    double step_divisor = 10;       ///< no vertex moves farther in an iteration than the first mean edge over this, nor
+                                    ///< than a quarter of the lowest triangle at it; >= 1
     double refine_length = 0;       ///< edges near water that are longer are split [thesis, 8.5], length unit; 0 = none
     std::uint32_t refine_every = 8; ///< iterations between two looks for long edges, >= 1
 
