@@ -12,11 +12,11 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->footer(std::string(mesh_footer) + field_footer +
               "Defaults depend on the longest side L of INPUT: gravity is 10 L / s^2 downwards and water rises above the\n"
               "model, so that a result does not depend on its unit; give --gravity and the rest for a model in metres.\n" + result_footer +
-              "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (what had been reached is written).");
+              "Exit codes: 0 done, 1 bad input, 2 usage, 130 stopped by Ctrl-C (a checkpoint is written, see --checkpoint).");
     add_mesh_input(*c, a);
     c->add_option("--model", a.model, "partheniades: k (tau - tau_c)^a with tau = K theta^m; curvature: ridges under water first")
         ->check(CLI::IsMember({"partheniades", "curvature"}))->capture_default_str();
-    c->add_option("--iterations", a.iterations, "steps of the water")->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62))->capture_default_str();
+    c->add_option("--iterations", a.iterations, "steps of the water, in all, those before --resume included")->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62))->capture_default_str();
     c->add_option("--fluid", a.fluid, "rain: drops that fall and run off; sph: water with pressure")->check(CLI::IsMember(hydraulic_fluids()))->capture_default_str();
     c->add_option("--particles", a.particles, "of water")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
     c->add_option("--emitter", a.emitter, "BOX x0,y0,z0,x1,y1,z1 that water starts in; default: above the model");
@@ -40,6 +40,8 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--refine", a.refine, "edges under water longer than this are split; 0: none")->check(between(0.0, 1e100))->capture_default_str();
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
+    c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/hydraulic.checkpoint");
+    c->add_option("--resume", a.resume, "checkpoint to go on from");
     return c;
 }
 

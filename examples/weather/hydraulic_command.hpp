@@ -18,7 +18,7 @@ struct hydraulic_arguments {
     std::string model = "partheniades";
     std::string fluid = "rain";
     std::uint32_t particles = 10000;
-    std::uint64_t iterations = 600;
+    std::uint64_t iterations = 600;   ///< in all, those before --resume included
     std::string emitter;              ///< x0,y0,z0,x1,y1,z1
     std::string velocity = "0,0,0";
     std::string gravity;              ///< x,y,z
@@ -41,13 +41,15 @@ struct hydraulic_arguments {
     std::uint64_t seed = 1;
     std::size_t threads = 1;
     std::uint64_t snapshots = 0;
+    std::string checkpoint;
+    std::string resume;
     std::vector<std::string> formats{"vtp", "obj"};
     std::string progress = "auto";
 };
 
 CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a);
 
-/// Runs it. False when Ctrl-C ended it early; what had been reached is written.
+/// Runs it. False when Ctrl-C ended it early; then the checkpoint is there.
 bool run_hydraulic(hydraulic_arguments const& a);
 
 }  // namespace weather

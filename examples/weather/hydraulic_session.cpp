@@ -1,6 +1,7 @@
 #include "hydraulic_session.hpp"
 
 #include "field_choice.hpp"
+#include "input.hpp"
 #include "spec.hpp"
 
 #include <tafoni/curvature/estimate_curvature.hpp>
@@ -10,9 +11,11 @@
 #include <tafoni/weathering/hydraulic_run.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 namespace weather {
 
@@ -42,14 +45,26 @@ int axis_of(vec3 const& up) {
 
 /// The erosion of `base`, divided where rock is hard; what is laid down is not.
 struct hardened {
+    static constexpr char const* name = "partheniades with durability";
+
     partheniades_erosion base{};
     any_field durability = 1;
+    std::array<double, 2> fields{};  ///< what checkpoints know of them
 
     [[nodiscard]] double rate(wash_point const& at) const {
         double const r = base.rate(at);
         return r > 0 ? r / std::max(durability(at.position), 1e-3) : r;
     }
     void validate() const { base.validate(); }
+    [[nodiscard]] std::array<double, 2> parameters() const { return fields; }
+    /// O(vertices).
+    void look_at_fields(std::span<vec3 const> positions) {
+        detail::number_hash h;
+        for (any_field const* f : {&base.coefficient, &base.critical, &base.exponent, &base.consistency, &base.power, &durability}) {
+            for (vec3 const& p : positions) h.add((*f)(p));
+        }
+        fields = {static_cast<double>(h.value() >> 32), static_cast<double>(h.value() & 0xFFFFFFFF)};
+    }
 };
 static_assert(exchange_rule<hardened>);
 
@@ -139,6 +154,10 @@ void hydraulic_session::settle() {
 
 bool hydraulic_session::run() {
     require_makable(a_.output);
+    if (!a_.checkpoint.empty()) {
+        std::filesystem::path const folder = std::filesystem::path(a_.checkpoint).parent_path();
+        require_makable(folder.empty() ? "." : folder.string());
+    }
     stopwatch watch;
     progress_.context().tick("read", 0);
     input_ = load_surface(a_.input, a_.seed);
@@ -149,8 +168,10 @@ bool hydraulic_session::run() {
     if (a_.model == "curvature") {
         run_process(curvature_erosion<any_estimator>{.estimator = estimator_, .power = a_.power, .influence = water_.influence, .durability = fields.durability});
     } else {
-        run_process(hardened{.base = {.coefficient = fields.k, .critical = fields.tau_c, .exponent = fields.a, .consistency = fields.K, .power = fields.m},
-                             .durability = fields.durability});
+        hardened process{.base = {.coefficient = fields.k, .critical = fields.tau_c, .exponent = fields.a, .consistency = fields.K, .power = fields.m},
+                         .durability = fields.durability};
+        process.look_at_fields(input_.surface.positions);
+        run_process(process);
     }
     return !stopped_;
 }
@@ -175,13 +196,22 @@ void hydraulic_session::run_process(Process const& process) {
 
 template <class Run>
 void hydraulic_session::run_with(Run& run) {
+    if (!a_.resume.empty()) {
+        std::string const bytes = load_bytes(a_.resume);
+        run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+        if (run.report().iterations > a_.iterations) {
+            throw usage_error("--iterations " + std::to_string(a_.iterations) + ": the checkpoint has " +
+                              std::to_string(run.report().iterations));
+        }
+    }
     // Made only now that the input has been accepted, so that a refused run leaves nothing behind.
     std::filesystem::path const folder = made_folder(a_.output);
     vec3 origin{0, 0, 0};
     for (int k = 0; k < 3; ++k) origin[k] = std::floor(input_.bounds.lo[k]);
     out_ = output_folder(folder, a_.formats, origin);
     if (a_.snapshots > 0) made_folder((folder / "snapshots").string());
-    out_.remove_old("hydraulic", [](std::uint64_t) { return false; });
+    std::uint64_t const begin = run.report().iterations;
+    out_.remove_old("hydraulic", [&](std::uint64_t n) { return !a_.resume.empty() && n <= begin; });
     stopwatch watch;
     weather(run);
     seconds_["weather"] = watch.lap() - aside_;
@@ -189,6 +219,11 @@ void hydraulic_session::run_with(Run& run) {
     add_history(run);
     out_.write("weathered", surface(run));
     history_.write(out_);
+    std::string checkpoint = a_.checkpoint;
+    if (checkpoint.empty() && stopped_) checkpoint = (out_.folder() / "hydraulic.checkpoint").string();
+    if (!checkpoint.empty()) write_checkpoint(run, checkpoint);
+    if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
+    // Last, so that it names only what is there.
     if (a_.snapshots > 0) series_.finish(out_);
     progress_.show("write", 1);
     seconds_["write"] = watch.lap() + aside_;
@@ -201,9 +236,14 @@ void hydraulic_session::run_with(Run& run) {
 
 template <class Run>
 void hydraulic_session::weather(Run& run) {
-    // About 50 rows of history; the run is cut there, which changes nothing.
+    std::uint64_t done = run.report().iterations;
+    if (!a_.resume.empty()) {
+        history_.recall(out_, done);
+        series_.recall(out_, a_.snapshots, done);
+    }
+    // About 50 rows of history, at iterations that do not depend on where a run was resumed; the run is cut there, which
+    // changes nothing.
     std::uint64_t const row = std::max<std::uint64_t>(1, (a_.iterations + 49) / 50);
-    std::uint64_t done = 0;
     run_context const context{.on_progress = [&](progress_event const&) {
         std::uint64_t const n = run.report().iterations;
         double const share = a_.iterations == 0 ? 1 : static_cast<double>(n) / static_cast<double>(a_.iterations);
@@ -218,6 +258,7 @@ void hydraulic_session::weather(Run& run) {
         if (a_.snapshots > 0 && done % a_.snapshots == 0) {
             series_.write(out_, done, surface(run));
             history_.write(out_);
+            if (!a_.checkpoint.empty()) write_checkpoint(run, a_.checkpoint);
         }
         aside_ += watch.lap();
         if (done == a_.iterations) break;
@@ -230,7 +271,12 @@ void hydraulic_session::weather(Run& run) {
             break;
         }
     }
-    if (stopped_) std::fprintf(stderr, "stopped after %llu iterations\n", static_cast<unsigned long long>(done));
+}
+
+template <class Run>
+void hydraulic_session::write_checkpoint(Run const& run, std::string const& path) const {
+    auto const bytes = run.checkpoint();
+    detail::write_file("weather", path, {reinterpret_cast<char const*>(bytes.data()), bytes.size()});
 }
 
 template <class Run>

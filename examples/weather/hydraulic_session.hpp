@@ -60,6 +60,8 @@ private:
     template <class Run>
     [[nodiscard]] surface_mesh surface(Run const& run) const;
     template <class Run>
+    void write_checkpoint(Run const& run, std::string const& path) const;
+    template <class Run>
     void add_history(Run& run);
     template <class Run>
     void write_report(Run const& run) const;

@@ -170,14 +170,31 @@ ledger() {
         'BEGIN { x = e - d - c - l; exit !(e > 0 && x * x <= 1e-18 * e * e) }' || complain "$1: the ledger does not add up"
     awk -F, 'NR > 1 { x = $5 - $6 - $7 - $8; if (x * x > 1e-18 * $5 * $5) exit 1 }' "$1/history.csv" || complain "$1: a row of the history does not add up"
 }
-flow="builtin:valley:resolution=24 --iterations 60 --snapshots 30 --emitter 0.2,0.35,0.13,0.5,0.65,0.2 --progress none --format obj,vtp"
+flow="builtin:valley:resolution=24 --snapshots 30 --emitter 0.2,0.35,0.13,0.5,0.65,0.2 --progress none --format obj,vtp"
 # shellcheck disable=SC2086
 for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300"; do
     set -- $case
     kind=$1_$2
-    expect 0 "$kind" "$weather" hydraulic $flow -o "$kind" --model "$1" --fluid "$2" --particles "$3"
-    expect 0 "$kind"_3 "$weather" hydraulic $flow -o "$kind"_3 --model "$1" --fluid "$2" --particles "$3" --threads 3
+    water="--model $1 --fluid $2 --particles $3"
+    expect 0 "$kind" "$weather" hydraulic $flow -o "$kind" $water --iterations 60 --checkpoint "$kind".bin
+    expect 0 "$kind"_3 "$weather" hydraulic $flow -o "$kind"_3 $water --iterations 60 --threads 3 --checkpoint "$kind"_3.bin
     same "$kind" "$kind"_3
+    cmp "$kind".bin "$kind"_3.bin || complain "$kind: checkpoints differ"
+    expect 0 "$kind"_half "$weather" hydraulic $flow -o "$kind"_on $water --iterations 30 --checkpoint half.bin
+    expect 0 "$kind"_rest "$weather" hydraulic $flow -o "$kind"_on $water --iterations 60 --resume half.bin --checkpoint "$kind"_on.bin
+    for file in weathered.vtp weathered.obj snapshots; do
+        diff -r "$kind/$file" "$kind"_on/$file > diff.log || complain "$kind: a resumed run ends with another $file"
+    done
+    cmp "$kind".bin "$kind"_on.bin || complain "$kind: a resumed run ends with another checkpoint"
+    for other in "--influence 0.01 --k 0.001" "--step 7" "--refine 0.5" "--particles 17" "--viscosity 0.5 --lifetime 2" "--durability 2" "--gravity 0,0,-9"; do
+        case $other in --particles*) drops="--model $1 --fluid $2" ;; *) drops=$water ;; esac
+        expect 1 other "$weather" hydraulic $flow -o none $drops --iterations 60 --resume half.bin $other
+    done
+    expect 2 too_few "$weather" hydraulic $flow -o none $water --iterations 7 --resume half.bin
+    head -c 1000 half.bin > cut.bin
+    expect 1 truncated "$weather" hydraulic $flow -o none $water --iterations 60 --resume cut.bin
+    expect 1 foreign "$weather" hydraulic $flow -o none $water --iterations 60 --resume end1
+    [ ! -e none ] || complain "a refused resume of water made its folder"
     ledger "$kind"
     for key in schema version process seed parameters gravity emitter radius k tau_c influence keep threads stopped repaired iterations time \
         particles contacts ledger eroded deposited carried left vertices_added largest_wear seconds read weather write; do
@@ -203,6 +220,28 @@ ridge="builtin:bust:resolution=20 --particles 800 --format obj --progress none"
     expect 0 sideways "$weather" hydraulic $ridge -o sideways --iterations 60 --up=-x --emitter 0.4,-0.1,0.3,0.5,0.1,0.8 --velocity=-1,0,0
     expect 0 still "$weather" hydraulic $ridge -o still --iterations 0
     holds "$(number still eroded) == 0 && $(number still iterations) == 0" still
+}
+
+# Ctrl-C: 130 and a checkpoint that goes on to the same end
+# shellcheck disable=SC2086
+{
+    "$weather" hydraulic $ridge -o dammed --iterations 100000000 2> dammed.log &
+    child=$!
+    tries=0
+    until [ -d dammed ] || [ $tries -gt 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+    sleep 0.3
+    kill -INT $child
+    wait $child
+    code=$?
+    [ $code -eq 130 ] || { complain "Ctrl-C of hydraulic: exit code $code, expected 130"; tail -3 dammed.log; }
+    [ -s dammed/hydraulic.checkpoint ] || complain "Ctrl-C of hydraulic wrote no checkpoint"
+    reached=$(number dammed iterations)
+    if [ "$reached" -lt 1500 ]; then
+        end=$((reached + 5))
+        expect 0 broken "$weather" hydraulic $ridge -o dammed --iterations $end --resume dammed/hydraulic.checkpoint
+        expect 0 unbroken "$weather" hydraulic $ridge -o unbroken --iterations $end
+        cmp dammed/weathered.obj unbroken/weathered.obj || complain "hydraulic goes on after Ctrl-C to another end"
+    fi
 }
 
 # wrinkles: files, a pattern that another mesh wears, both profiles
