@@ -3,6 +3,7 @@
 #ifndef TAFONI_TESTING_FLUID_LAWS_HPP
 #define TAFONI_TESTING_FLUID_LAWS_HPP
 
+#include <tafoni/core/detail/bytes.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 
 #include <algorithm>
@@ -71,6 +72,18 @@ template <particle_fluid Fluid>
     };
     run(open_space{});
     run(ground);
+    if constexpr (requires(tafoni::detail::byte_writer& out, tafoni::detail::byte_reader& in, Fluid& f) { f.save(out); f.load(in); }) {
+        Fluid one(start);
+        Fluid two(start);
+        for (int k = 0; k < steps; ++k) static_cast<void>(one.step(ground, inline_executor{}));
+        tafoni::detail::byte_writer out;
+        one.save(out);
+        tafoni::detail::byte_reader in(out.bytes(), "laws::fluid");
+        two.load(in);
+        law(in.left() == 0, "load reads as much as save wrote");
+        law(same(one, two) && one.step(ground, inline_executor{}) == two.step(ground, inline_executor{}) && same(one, two),
+            "a saved fluid goes on as if it had not been");
+    }
     return broken;
 }
 
