@@ -139,6 +139,58 @@ TEST_CASE("points that coincide are collapsed without a number that is not one")
     CHECK(open_edges(s) == 0);
 }
 
+TEST_CASE("no triangle of a plane turns over, however many edges go") {
+    for (double const share : {0.6, 0.9, 1.3}) {
+        triangle_surface s = parametric(
+            40, 37, false, false, 0.3, [](double u, double v) { return vec3{u, v, 0}; }, [](double, double) { return 0.0; }).mesh;
+        for (auto const& t : s.triangles) {
+            REQUIRE(cross(s.positions[t[1]] - s.positions[t[0]], s.positions[t[2]] - s.positions[t[0]])[2] > 0);
+        }
+        REQUIRE(collapse_short_edges(s, share * s.mean_edge_length()).collapsed > 100);
+        for (auto const& t : s.triangles) {
+            CHECK(cross(s.positions[t[1]] - s.positions[t[0]], s.positions[t[2]] - s.positions[t[0]])[2] > 0);
+        }
+    }
+}
+
+TEST_CASE("a closed manifold stays one down to a few dozen triangles") {
+    for (std::uint32_t const n : {30U, 47U, 64U}) {
+        for (double const share : {1.0, 1.5, 2.5, 4.0}) {
+            triangle_surface s = torus_surface(n, 25, 0.45, 1, 0.45).mesh;
+            collapse_short_edges(s, share * s.mean_edge_length());
+            CHECK(open_edges(s) == 0);
+            CHECK(euler(s) == 0);
+            vertex_rings const rings(s.positions.size(), s.triangles);
+            for (std::size_t v = 0; v < s.positions.size(); ++v) {  // a fan around every vertex: as many triangles as neighbours
+                REQUIRE(rings.faces(v).size() == rings.neighbors(v).size());
+                REQUIRE(rings.neighbors(v).size() >= 3);
+            }
+        }
+    }
+}
+
+TEST_CASE("a narrow band is not pinched: only the edges at its ends go") {
+    triangle_surface band;
+    for (std::uint32_t k = 0; k < 20; ++k) {
+        band.positions.push_back(vec3{1.0 * k, 0, 0});
+        band.positions.push_back(vec3{1.0 * k, 0.01, 0});
+    }
+    for (std::uint32_t a = 0; a < 38; a += 2) {
+        band.triangles.push_back({a, a + 2, a + 1});
+        band.triangles.push_back({a + 1, a + 2, a + 3});
+        band.positions.push_back(vec3{0.5 * a + 0.5, -1, 0});  // a fringe
+        band.triangles.push_back({a, static_cast<std::uint32_t>(band.positions.size() - 1), a + 2});
+    }
+    CHECK(collapse_short_edges(band, 0.1).collapsed == 2);
+    CHECK(band.triangles.size() == 3 * 19 - 2);
+}
+
+TEST_CASE("M4: a tetrahedron does not fold flat where another shares its edge") {
+    triangle_surface s{.positions = {vec3{0, 0, 0}, vec3{1e-3, 0, 0}, vec3{0, 1, 0}, vec3{0, 0, 1}, vec3{1, 1, 1}, vec3{2, 1, 1}},
+                       .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {4, 5, 2}, {4, 3, 5}, {5, 3, 2}, {2, 3, 4}}};
+    CHECK(collapse_short_edges(s, 0.1).collapsed == 0);
+}
+
 TEST_CASE("M18: short edges around a vertex of a hundred thousand triangles go in a moment") {
     for (bool const closed : {true, false}) {
         triangle_surface s = hub(100000, 0.5, closed);

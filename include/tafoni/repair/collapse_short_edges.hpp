@@ -52,10 +52,11 @@ public:
                    vertex_rings const& rings)
         : positions_(positions), triangles_(triangles), rings_(rings) {}
 
-    /// Nothing where the surface would fold, be pinched or turn over. `lost(w)` tells how many neighbours a vertex has
-    /// lost since the rings were made. O(triangles at the ends); at an end of more than `many` triangles that of the other.
-    template <class Lost>
-    [[nodiscard]] std::optional<vec3> target(std::uint32_t u, std::uint32_t v, Lost const& lost) {
+    /// Nothing where the surface would fold, be pinched or turn over. O(triangles at the ends).
+    ///
+    /// The rings of the vertices opposite the edge may be those before other edges of them were collapsed: edges whose
+    /// ends are not neighbours leave a ring of at least three vertices for each, so none of them shrinks it below four.
+    [[nodiscard]] std::optional<vec3> target(std::uint32_t u, std::uint32_t v) {
         auto const [few, more] = rings_.faces(u).size() <= rings_.faces(v).size() ? std::array{u, v} : std::array{v, u};
         // The link condition: the ends share no neighbours but the corners opposite the edge.
         common_.clear();
@@ -71,7 +72,7 @@ public:
         if (beside == 2 && border_u && border_v) return {};  // would pinch the surface
         if (beside == 2 && rings_.faces(u).size() + rings_.faces(v).size() <= 6) return {};  // a tetrahedron would fold
         for (std::uint32_t const w : common_) {
-            if (rings_.neighbors(w).size() - lost(w) <= 3 && !rings_.is_border(w)) return {};
+            if (rings_.neighbors(w).size() <= 3 && !rings_.is_border(w)) return {};
         }
         // A border keeps its line: the end that lies on it keeps its place. So does the hub of very many triangles.
         vec3 const p = positions_[u];
@@ -81,9 +82,6 @@ public:
         if (turns_over(u, v, meet) || turns_over(v, u, meet)) return {};
         return meet;
     }
-    /// The vertices opposite the edge that `target` was last asked about.
-    [[nodiscard]] std::span<std::uint32_t const> opposite() const noexcept { return common_; }
-
 private:
     static constexpr std::size_t many = 256;
 
@@ -133,14 +131,12 @@ public:
         known_ = nullptr;
         collapse_rules rules(surface_.positions, surface_.triangles, rings);
         touched_.assign(surface_.positions.size(), 0);
-        lost_.assign(surface_.positions.size(), 0);
         std::size_t done = 0;
         for (short_edge const& e : edges) {
             auto const [u, v] = e.ends;
             if (touched_[u] != 0 || touched_[v] != 0) continue;
-            std::optional<vec3> const meet = rules.target(u, v, [&](std::uint32_t w) { return lost_[w]; });
+            std::optional<vec3> const meet = rules.target(u, v);
             if (!meet) continue;
-            for (std::uint32_t const w : rules.opposite()) ++lost_[w];
             collapse(rings, u, v, *meet);
             survivor[v] = u;
             ++done;
@@ -185,7 +181,6 @@ private:
     vertex_rings const* known_;
     vertex_rings rings_{};
     std::vector<unsigned char> touched_{};
-    std::vector<std::uint32_t> lost_{};
 };
 
 struct collapse_short_edges_fn {

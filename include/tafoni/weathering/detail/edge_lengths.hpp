@@ -73,7 +73,7 @@ template <executor Executor>
         find_short_edges(positions, rings, limit * limit, b * vertex_grain,
                          std::min((b + 1) * vertex_grain, positions.size()), found);
         for (short_edge const& e : found) {
-            if (rules.target(e.ends[0], e.ends[1], [](std::uint32_t) { return 0U; })) return true;
+            if (rules.target(e.ends[0], e.ends[1])) return true;
         }
     }
     return false;
