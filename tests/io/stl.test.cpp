@@ -133,6 +133,16 @@ TEST_CASE("attribute bytes and a far origin survive STL there and back") {
     CHECK(encode_stl(back.mesh, back.attributes, {.origin = back.origin}) == once);
 }
 
+TEST_CASE("corners that only float makes equal are written alike, whatever the signs of their zeros") {
+    indexed_mesh mesh;
+    for (vec3 const& v : {vec3{0, 1, 0}, vec3{1 + 1e-13, 0, 0}, vec3{1, 0, -0.0}}) mesh.add_vertex(v);
+    mesh.add_face({0, 1, 2});
+    std::string const bytes = encode_stl(mesh);
+    mesh_file const again = stl(bytes);
+    CHECK(again.mesh.vertex_count() == 2);
+    CHECK(encode_stl(again.mesh) == bytes);
+}
+
 TEST_CASE("concave polygons are cut along their inside in an STL") {
     indexed_mesh mesh;
     for (vec3 const& p : {vec3{0, 0, 0}, vec3{2, 0, 0}, vec3{2, 2, 0}, vec3{1, 0.5, 0}, vec3{0, 2, 0}}) mesh.add_vertex(p);

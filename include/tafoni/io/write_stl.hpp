@@ -66,10 +66,11 @@ template <polygon_mesh M>
             loop.push_back(access::position(mesh, static_cast<std::size_t>(access::corner(mesh, f, k))));
         }
         auto const triangle = [&](vec3 const& a, vec3 const& b, vec3 const& c) {
-            // Of the rounded corners, so that a file that is read and written again is the same.
+            // Of the rounded corners, so that a file that is read and written again is the same; without the sign
+            // of zero, since a reader that welds corners can keep only one of two.
             std::array<vec3, 3> stored{a, b, c};
             for (vec3& p : stored) {
-                for (int axis = 0; axis < 3; ++axis) p[axis] = detail::round_to_float(p[axis] - origin[axis]);
+                for (int axis = 0; axis < 3; ++axis) p[axis] = detail::round_to_float(p[axis] - origin[axis]) + 0.0;
             }
             vec3 const u{stored[1][0] - stored[0][0], stored[1][1] - stored[0][1], stored[1][2] - stored[0][2]};
             vec3 const w{stored[2][0] - stored[0][0], stored[2][1] - stored[0][1], stored[2][2] - stored[0][2]};
