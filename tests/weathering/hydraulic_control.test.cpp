@@ -2,6 +2,7 @@
 
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
+#include <tafoni/geometry/indexed_mesh.hpp>
 #include <tafoni/testing/fluid_archetypes.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
@@ -51,6 +52,20 @@ struct sliding {
         for (vec3& p : at) p += 0.1 * speed;
         return 0.1;
     }
+};
+/// With numbers that go round with every step.
+struct going_round : sliding {
+    std::size_t turn = 0;
+    std::uint64_t id(std::size_t i) const { return (i + turn) % at.size(); }
+    vec3 position(std::size_t i) const { return at[id(i)]; }
+    double step(fluid_boundary auto const& walls, executor auto const& x) {
+        turn += 7;
+        return sliding::step(walls, x);
+    }
+};
+/// Half of it is gone after a while.
+struct melting : sliding {
+    std::size_t particle_count() const { return steps < 20 ? at.size() : at.size() / 2; }
 };
 struct stuck : sliding {
     double step(fluid_boundary auto const&, executor auto const&) { return 0; }
@@ -170,6 +185,35 @@ TEST_CASE("a turned scene erodes alike") {
     };
     alike(partheniades_erosion{.coefficient = 1e-3, .critical = 0.1});
     alike(curvature_erosion<>{.influence = 1});
+}
+
+TEST_CASE("particles keep what they carry when a fluid numbers them anew, and what is gone has left") {
+    // Takes on one half, lays down on the other.
+    struct ferry {
+        double rate(wash_point const& at) const { return at.position[0] < 5 ? 1e-4 : -1e-4; }
+    };
+    triangle_surface const s = slope(12, 1);
+    going_round round;
+    round.at = swarm(60).at;
+    round.speed = swarm(60).speed;
+    hydraulic_run straight(s, swarm(60), ferry{});
+    hydraulic_run turned(s, round, ferry{});
+    straight.run(40);
+    turned.run(40);
+    CHECK(straight.report().ledger.deposited > 0);
+    CHECK(turned.surface().positions == straight.surface().positions);
+    CHECK(turned.sediment() == straight.sediment());
+    CHECK(turned.report().ledger.left == 0);
+    CHECK(turned.report().ledger.carried == straight.report().ledger.carried);
+    melting some;
+    some.at = round.at;
+    some.speed = round.speed;
+    hydraulic_run less(s, some, ferry{});
+    CHECK(less.run(19).ledger.left == 0);
+    double const before = less.report().ledger.carried;
+    CHECK(less.run(2).ledger.left > 0);
+    CHECK(less.report().ledger.left < before);
+    CHECK(less.balanced());
 }
 
 TEST_CASE("every parameter of the shear stress may be a field") {
@@ -308,6 +352,22 @@ TEST_CASE("a fluid that does not advance and a rule without an answer are refuse
     };
     hydraulic_run unsure(slope(4, 0), sliding{.at = {vec3{5.1, 5.2, 0.1}}}, blind{});
     CHECK_THROWS_WITH(unsure.run(1), Catch::Contains("rule"));
+}
+
+TEST_CASE("a mesh of polygons that are triangles erodes as they do, one of others is refused by its face") {
+    triangle_surface const s = slope(12, 1);
+    indexed_mesh m;
+    m.positions = s.positions;
+    for (auto const& t : s.triangles) m.add_face({t[0], t[1], t[2]});
+    partheniades_erosion const rule{.coefficient = 1e-3, .critical = 0.1};
+    hydraulic_run a(s, swarm(60), rule);
+    hydraulic_run b(m, swarm(60), rule);
+    a.run(5);
+    b.run(5);
+    CHECK(a.report().ledger.eroded > 0);
+    CHECK(same_state(a, b));
+    m.add_face({0, 1, 14, 13});
+    CHECK_THROWS_WITH(hydraulic_run(m, swarm(60), rule), Catch::Contains("face 288 has 4 corners"));
 }
 
 TEST_CASE("the least fluid erodes") {

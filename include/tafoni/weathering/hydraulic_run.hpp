@@ -36,8 +36,8 @@ namespace tafoni {
 template <hydraulic_process Process, particle_fluid Fluid>
 class hydraulic_run {
 public:
-    /// Faces with more than three corners are cut into triangles. O(vertices + faces).
-    /// \throws invalid_input  for a mesh or parameters out of range.
+    /// O(vertices + faces). \throws invalid_input  for a mesh or parameters out of range; `unsupported` with the first
+    /// face that is no triangle: `triangulate` makes some of it.
     template <polygon_mesh M>
     hydraulic_run(M const& mesh, Fluid fluid, Process process, hydraulic_options const& options = {})
         : process_(std::move(process)), options_((options.validate(), options)), fluid_(std::move(fluid)),
@@ -57,7 +57,7 @@ public:
     }
 
     /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
-    /// Where an observer, a rule, an estimator or the fluid throws, surface and report are those after the last whole
+    /// Where an observer, a rule, an estimator, the fluid or the allocator throws, surface and report are those after the last whole
     /// iteration, and another `run` goes on as if nothing had been thrown (if the fluid does).
     /// O(vertices + faces + particles) each, beside the fluid's own cost.
     template <executor Executor = inline_executor>
