@@ -194,7 +194,9 @@ std::array<vec3, 3> corners_of(triangle_surface const& s, std::array<std::uint32
 }  // namespace
 
 TEST_CASE("the cotangent Laplacian is equations 5 and 8 of Meyer et al., angle by angle") {
-    triangle_surface const s = torus_surface(31, 17, 0.35).mesh;  // a quarter of its triangles are obtuse; an odd number
+    triangle_surface s = torus_surface(31, 17, 0.35).mesh;  // a quarter of its triangles are obtuse
+    s.triangles.erase(s.triangles.begin());                 // an odd number, the last inside
+    vertex_rings const rings(s.positions.size(), s.triangles);
     std::size_t const n = s.positions.size();
     std::vector<vec3> edges(n, vec3{0, 0, 0});
     std::vector<vec3> normal(n, vec3{0, 0, 0});
@@ -214,12 +216,15 @@ TEST_CASE("the cotangent Laplacian is equations 5 and 8 of Meyer et al., angle b
         }
     }
     auto const h = estimate_curvature(s, cotangent{});
-    for (std::size_t v = 0; v < n; ++v) REQUIRE(h[v] == Approx(dot(edges[v], normalized(normal[v])) / (4 * area[v])).epsilon(1e-9));
+    for (std::size_t v = 0; v < n; ++v) {
+        if (rings.is_border(v)) continue;
+        REQUIRE(h[v] == Approx(dot(edges[v], normalized(normal[v])) / (4 * area[v])).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("the tensor fit is Rusinkiewicz's least squares, triangle by triangle") {
     triangle_surface s = torus_surface(31, 17, 0.35).mesh;
-    s.triangles.pop_back();  // an odd number
+    s.triangles.erase(s.triangles.begin());  // an odd number, the last inside
     vertex_rings const rings(s.positions.size(), s.triangles);
     std::vector<vec3> normal(s.positions.size());
     vertex_normals(surface_view{.positions = s.positions, .triangles = s.triangles, .rings = &rings}, normal);
@@ -318,7 +323,8 @@ TEST_CASE("a quadric is recovered exactly by the quadric fit") {
 }
 
 TEMPLATE_TEST_CASE("threads change no bit of a curvature", "[threads]", tensor_fit, cotangent, quadric_fit, bubble_ratio) {
-    curved_surface const s = torus_surface(90, 60, 0.25);
+    curved_surface s = torus_surface(90, 60, 0.25);
+    s.mesh.triangles.erase(s.mesh.triangles.begin());  // an odd number, the last inside
     auto const one = estimate_curvature(s.mesh, TestType{});
     for (std::size_t threads : {2U, 3U, 7U}) {
         thread_pool const pool(threads);
