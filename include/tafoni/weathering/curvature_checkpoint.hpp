@@ -7,6 +7,7 @@
 #include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
 #include <tafoni/weathering/detail/checkpoint_bytes.hpp>
+#include <tafoni/weathering/detail/surface_hash.hpp>
 
 #include <bit>
 #include <cstddef>
@@ -35,19 +36,6 @@ struct curvature_checkpoint {
     std::uint64_t retries = 0;
     double step = 0;
 };
-
-/// The mesh that a run began with. O(vertices + faces).
-[[nodiscard]] inline std::uint64_t surface_hash(triangle_surface const& s) {
-    number_hash h;
-    h.add(static_cast<std::uint64_t>(s.positions.size()));
-    for (vec3 const& p : s.positions) {
-        for (int d = 0; d < 3; ++d) h.add(p[d]);
-    }
-    for (auto const& t : s.triangles) {
-        for (std::uint32_t const c : t) h.add(std::uint64_t{c});
-    }
-    return h.value();
-}
 
 /// Options and policies; durability as it answers at the vertices of the input. O(vertices).
 template <class Process>

@@ -5,9 +5,9 @@
 
 #include <tafoni/fluid/concepts.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
-#include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/detail/checkpoint_bytes.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
+#include <tafoni/weathering/detail/surface_hash.hpp>
 #include <tafoni/weathering/hydraulic_erosion.hpp>
 
 #include <array>
