@@ -45,19 +45,7 @@ public:
         border_.assign(vertices, 0);
         std::vector<std::uint32_t> ring;
         for (std::size_t v = 0; v < vertices; ++v) {
-            ring.clear();
-            for (corner const& c : faces(v)) {
-                ring.push_back(triangles[c.face][(c.place + 1) % 3]);
-                ring.push_back(triangles[c.face][(c.place + 2) % 3]);
-            }
-            std::sort(ring.begin(), ring.end());
-            for (std::size_t k = 0; k < ring.size();) {
-                std::size_t e = k + 1;
-                while (e < ring.size() && ring[e] == ring[k]) ++e;
-                if (e - k == 1) border_[v] = 1;
-                neighbors_.push_back(ring[k]);
-                k = e;
-            }
+            if (!add_closed_fan(v, triangles)) add_any(v, triangles, ring);
             neighbor_begin_[v + 1] = static_cast<std::uint32_t>(neighbors_.size());
         }
     }
@@ -81,6 +69,61 @@ public:
     [[nodiscard]] bool is_border(std::size_t v) const noexcept { return border_[v] != 0; }
 
 private:
+    static constexpr std::size_t most_in_fan = 16;
+
+    /// Neighbours where each leads one triangle in and one out, as at nearly all vertices; false elsewhere.
+    bool add_closed_fan(std::size_t v, std::span<std::array<std::uint32_t, 3> const> triangles) {
+        std::span<corner const> const around = faces(v);
+        std::size_t const n = around.size();
+        if (n > most_in_fan) return false;
+        std::array<std::uint32_t, most_in_fan> out;
+        std::array<std::uint32_t, most_in_fan> in;
+        for (std::size_t k = 0; k < n; ++k) {
+            auto const& t = triangles[around[k].face];
+            std::uint32_t const place = around[k].place;
+            out[k] = t[place == 2 ? 0 : place + 1];
+            in[k] = t[place == 0 ? 2 : place - 1];
+        }
+        // Ranks by counting: no branch depends on the numbers, which are as good as random. Equal ones share a rank, so
+        // that the ranks no longer add up.
+        std::array<std::uint32_t, most_in_fan> sorted;
+        std::array<std::uint32_t, most_in_fan> other;
+        std::size_t ranks = 0;
+        std::size_t other_ranks = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            std::size_t rank = 0;
+            std::size_t other_rank = 0;
+            for (std::size_t j = 0; j < n; ++j) {
+                rank += out[j] < out[k] ? 1U : 0U;
+                other_rank += in[j] < in[k] ? 1U : 0U;
+            }
+            sorted[rank] = out[k];
+            other[other_rank] = in[k];
+            ranks += rank;
+            other_ranks += other_rank;
+        }
+        std::size_t const all = n * (n - 1) / 2;
+        if (ranks != all || other_ranks != all) return false;
+        if (!std::equal(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n), other.begin())) return false;
+        neighbors_.insert(neighbors_.end(), sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
+        return true;
+    }
+    void add_any(std::size_t v, std::span<std::array<std::uint32_t, 3> const> triangles, std::vector<std::uint32_t>& ring) {
+        ring.clear();
+        for (corner const& c : faces(v)) {
+            ring.push_back(triangles[c.face][(c.place + 1) % 3]);
+            ring.push_back(triangles[c.face][(c.place + 2) % 3]);
+        }
+        std::sort(ring.begin(), ring.end());
+        for (std::size_t k = 0; k < ring.size();) {
+            std::size_t e = k + 1;
+            while (e < ring.size() && ring[e] == ring[k]) ++e;
+            if (e - k == 1) border_[v] = 1;
+            neighbors_.push_back(ring[k]);
+            k = e;
+        }
+    }
+
     std::vector<std::uint32_t> face_begin_{};
     std::vector<corner> corners_{};
     std::vector<std::uint32_t> neighbor_begin_{};
