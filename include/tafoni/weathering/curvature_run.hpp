@@ -59,7 +59,8 @@ template <class Process = curvature_weathering<>>
 class curvature_run {
 public:
     /// O(vertices + faces).
-    /// \throws invalid_input  for a mesh with indices or coordinates out of range, or options out of range.
+    /// \throws invalid_input  for a mesh with indices or coordinates out of range, or options out of range; `unsupported`
+    ///         with the first face that is no triangle: `triangulate` makes some of it.
     template <polygon_mesh M>
     explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
         : process_((process.validate(), std::move(process))), options_((options.validate(), options)),

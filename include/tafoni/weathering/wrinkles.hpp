@@ -36,7 +36,8 @@ enum class wrinkle_profile : std::uint8_t {
 struct wrinkle {
     std::vector<vertex_index> controls{};  ///< ends, and where the line turns; at least 2, each next one another
     double radius = 0;                     ///< r of the affected region, length unit, > 0
-    double strength = 1;                   ///< multiplies the factor; negative carves
+    double strength = 1;                   ///< multiplies the factor, which on a groove is 0.12 r for a divisor of 10;
+                                           ///< negative carves
     wrinkle_profile profile = wrinkle_profile::fold;
 };
 
