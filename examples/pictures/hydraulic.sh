@@ -49,7 +49,7 @@ mkdir -p "$results"
 # Water with pressure, for it has to get out of the pools that it digs.
 pour gorge $((4000 / part)) "--camera-position=3.05,0.2,0.68 --camera-focal-point=1.1,0.53,0.12" "0 0 1" 45 $((8000 / part)) "a gorge" "cut by a stream" \
     builtin:canyon:resolution=$((80 / coarse)) --fluid sph --particles $((6000 / coarse)) --radius 0.022 \
-    --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 --durability 0.04 --step 30
+    --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 --durability 0.04 --step 30 --frame 0
 
 model=builtin:bust:resolution=$((110 / coarse))
 look="0.5 -1 0.35"
@@ -69,11 +69,11 @@ case $input in
         ;;
 esac
 pour bust $((900 / part)) "$look" "$upwards" 60 120 "a bust" "under rain" "$model" --up "$up" --particles $((6000 / coarse)) \
-    --durability 2 --step 40 --friction 6
+    --durability 0.2 --step 40 --friction 6
 facing=+Z
 # shellcheck disable=SC2086
 pour terrain $((500 / part)) "0.8 -1 0.9" "0 0 1" 50 $((900 / part)) "a slope" "under rain" "$terrain" $over --particles $((8000 / coarse)) \
-    --durability 1.4 --step 20 --friction 12
+    --durability 0.14 --step 20 --friction 12
 # shellcheck disable=SC2086
 legend "$results/bars.png" "water: none" much $wet
 stack "$out/hydraulic.png" "$results/gorge.png" "$results/bust.png" "$results/terrain.png" "$results/bars.png"
