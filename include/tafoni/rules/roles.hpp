@@ -124,7 +124,8 @@ auto check_parts() {
                       "this part models several roles of the bundle: give all members, or name the bundle's types");
         if constexpr (found.outcome == casting::fits_none) {
             static_assert(found.member < Members::size,
-                          "this part models no role that is left in the bundle, nor has a member of its name");
+                          "this part models no role that is left in the bundle: "
+                          "it takes or answers other types than the members' concepts ask for");
             if constexpr (found.member < Members::size) {
                 using role = typename std::tuple_element_t<found.member, typename Members::list>::role;
                 role::template expect<std::tuple_element_t<found.wrong, std::tuple<Parts...>>>();
