@@ -150,3 +150,26 @@ TEST_CASE("no faces, flat faces and far particles touch nothing") {
         CHECK_THROWS_AS(mesh_boundary(flat.positions, flat.triangles, bad), invalid_input);
     }
 }
+
+TEST_CASE("faces a million edges apart are found as those at hand") {
+    for (double const far : {1e5, 9e5, 3e6}) {
+        for (double const reach : {0.25, 0.01}) {
+            std::vector<vec3> const p{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {far, 0, 0}, {far + 1, 0, 0}, {far, 1, 0}};
+            std::vector<std::array<std::uint32_t, 3>> const t{{0, 1, 2}, {3, 4, 5}};
+            mesh_boundary const walls(p, t, reach);
+            for (std::uint32_t const face : {0U, 1U}) {
+                for (double const x : {0.01, 0.2, 0.45}) {
+                    for (double const height : {-0.9, -0.1, 0.6, 0.95}) {
+                        INFO(far << " apart, reach " << reach << ", x " << x << ", height " << height);
+                        std::vector<boundary_contact> met;
+                        walls.for_each_contact(vec3{p[3 * face][0] + x, 0.3, height * reach}, reach,
+                                               [&](boundary_contact const& c) { met.push_back(c); });
+                        REQUIRE(met.size() == 1);
+                        CHECK(met[0].face == face);
+                        CHECK(met[0].distance == Approx(height * reach));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -108,6 +108,7 @@ public:
 
 private:
     static constexpr double most_cells = 8e6;
+    static constexpr double most_along = 65536;  ///< cells, so that float tells places in one apart
     static constexpr std::uint32_t packs = detail::disc_sights::most / detail::ball_pack::count;  ///< looked at in one go
 
     /// A place in quarters of a cell.
@@ -283,7 +284,7 @@ private:
         vec3 const e = box.extent();
         lo_ = vec3{box.lo[0] - rim, box.lo[1] - rim, box.lo[2] - rim};
         auto const along = [&](int d) { return std::floor((e[d] + 2 * rim) / cell_) + 1; };
-        while (along(0) * along(1) * along(2) > most_cells) cell_ *= 1.25;
+        while (along(0) * along(1) * along(2) > most_cells || std::max({along(0), along(1), along(2)}) > most_along) cell_ *= 1.25;
         inverse_ = 1 / cell_;
         for (int d = 0; d < 3; ++d) size_[static_cast<std::size_t>(d)] = static_cast<std::size_t>(along(d));
         // What rounding to float may move a point or a height by.
