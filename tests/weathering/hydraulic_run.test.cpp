@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <bit>
+#include <limits>
 
 using namespace tafoni;
 using namespace tafoni_test;
@@ -242,4 +243,83 @@ TEST_CASE("parameters out of range are refused by name") {
     CHECK_THROWS_WITH(hydraulic_run(s, rain_over(1), curvature_erosion<>{.power = 0.5}), Catch::Contains("power"));
     CHECK_THROWS_WITH(hydraulic_run(s, rain_over(1), curvature_erosion<>{.influence = nan}), Catch::Contains("influence"));
     CHECK_THROWS_WITH(hydraulic_run(s, rain_over(1), curvature_erosion<>{}, {.step_divisor = 0}), Catch::Contains("step_divisor"));
+}
+
+TEST_CASE("rock goes at the rate of the rule, however slow, on ground of kilometres") {
+    // 2 km of 10 m edges, SI units: what a particle takes in a step is down to 10^-15 of the ground's box.
+    double const drop = 600;
+    triangle_surface ground = slope(200, 0);
+    for (vec3& p : ground.positions) p = vec3{200 * p[0], 200 * p[1], -drop * p[0] / 10};
+    double first = 0;
+    for (double const k : {1e-4, 1e-6, 1e-8, 1e-10}) {
+        rain_particles const rain({.box = {.lo = vec3{10, 10, -drop}, .hi = vec3{1990, 1990, 100}}},
+                                  {.keep = {.lo = vec3{0, 0, -2 * drop}, .hi = vec3{2000, 2000, 200}}},
+                                  {.particles = 4000, .radius = 2, .frame = 0.05});
+        hydraulic_run run(ground, rain, partheniades_erosion{.coefficient = k, .critical = 0});
+        double const share = run.run(20).ledger.eroded / k;
+        INFO("k = " << k);
+        REQUIRE(run.balanced());
+        REQUIRE(share > 0);
+        if (first == 0) first = share;
+        CHECK(share == Approx(first).epsilon(0.01));
+    }
+}
+
+TEST_CASE("a move that large coordinates swallow is not booked") {
+    // 1e6 from the origin a place is known to 1e-10: half of what is taken stays due until it is seen.
+    triangle_surface ground = slope(20, 0);
+    for (vec3& p : ground.positions) p[2] += 1e6;
+    vec3 const o = ground.positions[220];
+    struct slow {
+        double rate(wash_point const&) const { return 1e-13; }
+    };
+    hydraulic_run run(ground, standing{.at = {o + vec3{0.1, 0.05, 0.05}, o + vec3{0.15, 0.05, 0.05}}}, slow{});
+    run.run(5);
+    CHECK(run.surface().positions == ground.positions);
+    CHECK(run.report().ledger.eroded == 0);
+    CHECK(run.balanced());
+}
+
+TEST_CASE("a mesh that is one point, or has an estimate or a durability that is no number, is no harm") {
+    triangle_surface const point{.positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, .triangles = {{0, 1, 2}}};
+    hydraulic_run still(point, standing{.at = {{0.05, 0, 0}}}, curvature_erosion<>{});
+    CHECK(still.run(3).contacts == 3);
+    CHECK(still.surface().positions == point.positions);
+
+    triangle_surface const ground = slope(20, 6);
+    vec3 const o = ground.positions[220];
+    auto const nothing = [](vec3 const&) { return std::numeric_limits<double>::quiet_NaN(); };
+    hydraulic_run run(ground, standing{.at = {o + vec3{0, 0, 0.1}}}, curvature_erosion<>{.durability = any_field(nothing)});
+    try {
+        run.run(1);
+        FAIL("not refused");
+    } catch (invalid_input const& e) {
+        CHECK(e.code() == errc::out_of_range);
+        CHECK(e.place().kind == entity::vertex);
+    }
+    CHECK(run.surface().positions == ground.positions);
+    CHECK(run.report().iterations == 0);
+}
+
+namespace {
+/// Its reach grows.
+struct swelling {
+    double wide = 0.05;
+    vec3 at{0, 0, 0};
+    std::size_t particle_count() const { return 1; }
+    vec3 position(std::size_t) const { return at; }
+    vec3 velocity(std::size_t) const { return vec3{1, 0, 0}; }
+    double reach() const { return wide; }
+    double step(fluid_boundary auto const&, executor auto const&) {
+        wide *= 10;
+        return 0.1;
+    }
+};
+}  // namespace
+
+TEST_CASE("a fluid whose reach grows is asked about as far") {
+    triangle_surface const ground = slope(20, 0);
+    hydraulic_run run(ground, swelling{.at = vec3{5.1, 5.2, 3}}, partheniades_erosion{});
+    CHECK(run.run(1).contacts == 0);
+    CHECK(run.run(1).contacts == 1);
 }

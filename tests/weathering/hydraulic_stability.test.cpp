@@ -2,6 +2,8 @@
 #include "support/curved_surfaces.hpp"
 
 #include <tafoni/core/elementary.hpp>
+#include <tafoni/core/random.hpp>
+#include <tafoni/core/thread_pool.hpp>
 #include <tafoni/field/fractal_noise.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/geometry/self_intersections.hpp>
@@ -216,5 +218,135 @@ TEST_CASE("what a place cannot give in an iteration is not taken, so nothing goe
         run.run(40);
         CHECK(run.balanced());
         CHECK(run.report().ledger.eroded < 1.5 * flowing);
+    }
+}
+
+namespace {
+/// A closed slab, thinner than an edge, of wavy sides; water stands at both of them.
+triangle_surface slab(std::uint32_t n, double thick) {
+    triangle_surface s;
+    std::uint32_t const row = n + 1;
+    for (std::uint32_t side = 0; side < 2; ++side) {
+        for (std::uint32_t y = 0; y < row; ++y) {
+            for (std::uint32_t x = 0; x < row; ++x) {
+                s.positions.push_back(vec3{0.25 * x, 0.25 * y + 0.03 * ((x * 7 + y * 5 + side) % 4), side == 0 ? thick : 0.01 * ((x + y) % 2)});
+            }
+        }
+    }
+    auto const at = [&](std::uint32_t side, std::uint32_t x, std::uint32_t y) { return side * row * row + y * row + x; };
+    auto const quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        s.triangles.push_back({a, b, c});
+        s.triangles.push_back({a, c, d});
+    };
+    for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            quad(at(0, x, y), at(0, x + 1, y), at(0, x + 1, y + 1), at(0, x, y + 1));
+            quad(at(1, x, y), at(1, x, y + 1), at(1, x + 1, y + 1), at(1, x + 1, y));
+        }
+    }
+    for (std::uint32_t k = 0; k < n; ++k) {
+        quad(at(1, k, 0), at(1, k + 1, 0), at(0, k + 1, 0), at(0, k, 0));
+        quad(at(0, k, n), at(0, k + 1, n), at(1, k + 1, n), at(1, k, n));
+        quad(at(0, 0, k), at(0, 0, k + 1), at(1, 0, k + 1), at(1, 0, k));
+        quad(at(1, n, k), at(1, n, k + 1), at(0, n, k + 1), at(0, n, k));
+    }
+    return s;
+}
+/// Water that stays at both sides of the middle of the slab, however far these recede.
+struct gripping {
+    std::vector<vec3> at{};
+    std::size_t particle_count() const { return at.size(); }
+    vec3 position(std::size_t i) const { return at[i]; }
+    vec3 velocity(std::size_t) const { return vec3{1, 0.3, 0}; }
+    double reach() const { return 0.25; }
+    double step(fluid_boundary auto const&, executor auto const&) { return 0.1; }
+    void save(auto& out) const { out.put(std::uint64_t{at.size()}); }
+    void load(auto& in) { (void)in.get(); }
+};
+gripping both_sides(double thick) {
+    gripping out;
+    for (int k = 0; k < 300; ++k) {
+        double const x = 0.7 + 0.013 * (k % 100);
+        double const y = 0.7 + 0.21 * (k % 7);
+        out.at.push_back(vec3{x, y, k % 2 == 0 ? thick + 0.1 : -0.1});
+    }
+    return out;
+}
+}  // namespace
+
+TEST_CASE("walls thinner than an edge do not cut each other where the run looks around") {
+    double const thick = 0.06;
+    triangle_surface const start = slab(10, thick);
+    REQUIRE(self_intersections(start.positions, start.triangles).empty());
+    auto const cuts = [&](auto const& process, std::uint32_t every) {
+        hydraulic_run run(start, both_sides(thick), process, {.check_every = every});
+        std::size_t found = 0;
+        double gone = 0;
+        for (int k = 0; k < 6; ++k) {
+            run.run(5);
+            found = std::max(found, self_intersections(run.surface().positions, run.surface().triangles).size());
+            REQUIRE(run.balanced());
+            CHECK(run.report().ledger.eroded >= gone);
+            gone = run.report().ledger.eroded;
+        }
+        CHECK(gone > 0);
+        return found;
+    };
+    partheniades_erosion const stress{.coefficient = 0.01, .critical = 0};
+    CHECK(cuts(stress, 0) > 0);  // else this shows nothing
+    CHECK(cuts(curvature_erosion<>{.influence = 0.6}, 0) > 0);
+    for (std::uint32_t const every : {1U, 3U, 10U}) {
+        INFO("every " << every);
+        CHECK(cuts(stress, every) == 0);
+        CHECK(cuts(curvature_erosion<>{.influence = 0.6}, every) == 0);
+    }
+}
+
+TEST_CASE("a run that looks around goes on from a checkpoint between two looks, on any number of threads") {
+    double const thick = 0.06;
+    triangle_surface const start = slab(10, thick);
+    auto const make = [&](std::uint32_t every) {
+        return hydraulic_run(start, both_sides(thick), partheniades_erosion{.coefficient = 0.01, .critical = 0},
+                             {.refine_length = 0.2, .refine_every = 4, .check_every = every});
+    };
+    auto whole = make(3);
+    whole.run(11);
+    auto first = make(3);
+    first.run(7, {}, thread_pool(3));
+    auto second = make(3);
+    second.resume(first.checkpoint());
+    second.run(4);
+    CHECK(second.checkpoint() == whole.checkpoint());
+    CHECK(second.surface().positions == whole.surface().positions);
+    CHECK(self_intersections(whole.surface().positions, whole.surface().triangles).empty());
+    CHECK_THROWS_AS(make(2).resume(first.checkpoint()), io_error);
+}
+
+TEST_CASE("the gap between two triangles is that of their nearest points") {
+    auto random = [k = std::uint64_t{0}]() mutable {
+        stream s(5, 1, k++);
+        return s.uniform(-1, 1);
+    };
+    for (int n = 0; n < 300; ++n) {
+        std::array<vec3, 3> a;
+        std::array<vec3, 3> b;
+        for (vec3* p : {&a[0], &a[1], &a[2], &b[0], &b[1], &b[2]}) {
+            for (int d = 0; d < 3; ++d) (*p)[d] = random();
+        }
+        for (vec3& p : b) p[0] += 0.5 * (n % 4);
+        if (n % 5 == 0) b[2] = b[0] + 0.3 * (b[1] - b[0]);  // no area
+        double least = 1e9;
+        int const m = 40;
+        for (int i = 0; i <= m; ++i) {
+            for (int j = 0; i + j <= m; ++j) {
+                vec3 const p{a[0] + (i / 40.0) * (a[1] - a[0]) + (j / 40.0) * (a[2] - a[0])};
+                least = std::min(least, length(p - detail::nearest_on_triangle(b[0], b[1], b[2], p)));
+            }
+        }
+        double const gap = std::sqrt(detail::squared_gap(a, b));
+        INFO("pair " << n);
+        CHECK(gap <= least + 1e-12);
+        CHECK(gap >= least - 0.1);
+        CHECK(gap == Approx(std::sqrt(detail::squared_gap(b, a))).margin(1e-9));
     }
 }

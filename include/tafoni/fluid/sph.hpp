@@ -93,6 +93,12 @@ public:
             detail::fail<invalid_input>(errc::non_finite_vertex, "sph.place: particle " + std::to_string(i) + " is not finite",
                                         {.kind = entity::vertex, .index = i});
         }
+        try {
+            make_room(sorted.size());
+        } catch (...) {
+            origin_ = then;
+            throw;
+        }
         resize(0);
         ids_.clear();
         for (fluid_particle const& p : sorted) append(p.id, p.position, p.velocity);
@@ -216,6 +222,17 @@ private:
         }
         density_.resize(n, Scalar(0));
     }
+    /// So that `append` does not throw half way.
+    void make_room(std::size_t n) {
+        auto const reserve = [&](auto& a) {
+            if (a.capacity() < n) a.reserve(std::max(n, 2 * a.capacity()));
+        };
+        reserve(ids_);
+        for (triple* t : {&x_, &v_}) {
+            for (auto& a : *t) reserve(a);
+        }
+        reserve(density_);
+    }
     void append(std::uint64_t id, vec3 const& p, vec3 const& v) {
         ids_.push_back(id);
         for (int d = 0; d < 3; ++d) {
@@ -234,6 +251,7 @@ private:
             for (std::size_t i = 0; i < ids_.size(); ++i) places.occupy(position(i));
             places.for_each([&](vec3 const& p) {
                 if (ids_.size() >= options_.particles) return false;
+                make_room(ids_.size() + 1);
                 append(next_id_++, p, emitters_[k].velocity);
                 return true;
             });

@@ -46,6 +46,7 @@ struct hydraulic_state {
     sediment_books books{};
     hydraulic_report report{};
     double ahead = 0;  ///< s that the fluid is ahead of the surface by
+    std::vector<double> clear{};  ///< way that vertices have to other walls, below 0 unknown; or empty
 };
 
 /// Options and process; fields as they answer at the vertices of the input. O(vertices).
@@ -55,6 +56,7 @@ template <class Process>
     h.add(o.step_divisor);
     h.add(o.refine_length);
     h.add(std::uint64_t{o.refine_every});
+    h.add(std::uint64_t{o.check_every});
     auto const add_field = [&](auto const& field) {
         for (vec3 const& p : input) h.add(static_cast<double>(field(p)));
     };
@@ -74,14 +76,14 @@ template <class Process>
 }
 
 inline constexpr std::uint64_t hydraulic_checkpoint_magic = 0x6479682D66617400ULL;  // "\0taf-hyd"
-inline constexpr std::uint64_t hydraulic_checkpoint_version = 1;
+inline constexpr std::uint64_t hydraulic_checkpoint_version = 2;
 
 /// Magic, version, hashes of the input and of the parameters, state, fluid, hash. O(vertices + faces + particles).
 template <class Fluid>
 [[nodiscard]] std::vector<std::byte> write_checkpoint(hydraulic_state const& s, Fluid const& fluid, std::uint64_t input,
                                                       std::uint64_t parameters) {
     byte_writer out;
-    out.reserve(512 + 56 * s.surface.positions.size() + 12 * s.surface.triangles.size() + 80 * fluid.particle_count());
+    out.reserve(512 + 64 * s.surface.positions.size() + 12 * s.surface.triangles.size() + 80 * fluid.particle_count());
     out.put(hydraulic_checkpoint_magic);
     out.put(hydraulic_checkpoint_version, 4);
     out.put(input);
@@ -99,7 +101,10 @@ template <class Fluid>
     for (std::uint64_t const f : s.flow) out.put(f);
     for (std::int64_t const v : s.sediment) put_units(v);
     for (std::int64_t const v : s.books.due) put_units(v);
-    for (std::int64_t const v : {s.books.eroded, s.books.deposited, s.books.left}) put_units(v);
+    for (volume_sum const v : {s.books.eroded, s.books.deposited, s.books.left}) {
+        out.put(static_cast<std::uint64_t>(v));
+        out.put(static_cast<std::uint64_t>(v >> 64));
+    }
     std::uint64_t loaded = 0;
     for (auto const& e : s.books.load.all()) loaded += e.units != 0 ? 1U : 0U;
     out.put(loaded);
@@ -113,6 +118,8 @@ template <class Fluid>
     out.put(s.report.contacts);
     out.put(std::uint64_t{s.report.vertices_added});
     out.put_real(s.ahead);
+    out.put(std::uint64_t{s.clear.size()});
+    for (double const c : s.clear) out.put_real(c);
     fluid.save(out);
     out.put(byte_hash(out.bytes()));
     return std::move(out.bytes());
@@ -182,7 +189,10 @@ private:
         for (std::int64_t& v : s.sediment) v = units();
         s.books.due.resize(s.surface.positions.size());
         for (std::int64_t& v : s.books.due) v = units();
-        for (std::int64_t* v : {&s.books.eroded, &s.books.deposited, &s.books.left}) *v = units();
+        for (volume_sum* v : {&s.books.eroded, &s.books.deposited, &s.books.left}) {
+            volume_sum const low = in_.get();
+            *v = low + (volume_sum{units()} * (volume_sum{1} << 64));
+        }
         std::uint64_t const loaded = in_.get();
         if (loaded > in_.left() / 16) bad("there are fewer bytes than loads");
         for (std::uint64_t k = 0; k < loaded; ++k) {
@@ -195,6 +205,10 @@ private:
         s.report.contacts = in_.get();
         s.report.vertices_added = static_cast<std::size_t>(in_.get());
         s.ahead = positive();
+        std::uint64_t const clear = in_.get();
+        if ((clear != 0 && clear != n) || clear > in_.left() / 8) bad("the count of ways does not fit the mesh");
+        s.clear.resize(static_cast<std::size_t>(clear));
+        for (double& c : s.clear) c = in_.get_real();
         return s;
     }
 

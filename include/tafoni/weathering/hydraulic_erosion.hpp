@@ -113,6 +113,9 @@ struct hydraulic_options {
                                     ///< than a quarter of the lowest triangle at it; >= 1
     double refine_length = 0;       ///< edges near water that are longer are split [thesis, 8.5], length unit; 0 = none
     std::uint32_t refine_every = 8; ///< iterations between two looks for long edges, >= 1
+    std::uint32_t check_every = 0;  ///< iterations between two looks at the walls around moving vertices; until the next
+                                    ///< they go less than half of the way to the nearest triangle that is no neighbour, so
+                                    ///< that walls do not cut each other. 1 sees best, 0 = never
 
     /// \throws invalid_input  `bad_parameter`.
     void validate() const {

@@ -12,6 +12,7 @@
 #include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
 #include <tafoni/weathering/detail/water_contacts.hpp>
+#include <tafoni/weathering/detail/wall_clearance.hpp>
 #include <tafoni/weathering/detail/water_displacement.hpp>
 #include <tafoni/weathering/hydraulic_checkpoint.hpp>
 #include <tafoni/weathering/hydraulic_erosion.hpp>
@@ -49,11 +50,7 @@ public:
         wear_.assign(n, 0.0);
         flow_.assign(n, 0);
         sediment_.assign(n, 0);
-        box3 box;
-        for (vec3 const& p : surface_.positions) box.include(p);
-        vec3 const e = n > 0 ? box.extent() : vec3{1, 1, 1};
-        double const side = std::max({e[0], e[1], e[2]});
-        unit_ = detail::volume_unit(side * side * side);
+        unit_ = detail::volume_unit(largest_move());
     }
 
     /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
@@ -100,7 +97,7 @@ public:
     /// The state as bytes, the same on every machine. O(vertices + faces + particles).
     [[nodiscard]] std::vector<std::byte> checkpoint() const requires saved_fluid<Fluid> {
         return detail::write_checkpoint({.surface = surface_, .wear = wear_, .flow = flow_, .sediment = sediment_, .books = books_,
-                                         .report = report_, .ahead = ahead_},
+                                         .report = report_, .ahead = ahead_, .clear = clear_},
                                         fluid_, input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same process, options and fluid: the same bits as
@@ -121,13 +118,25 @@ public:
         books_ = std::move(s.books);
         report_ = s.report;
         ahead_ = s.ahead;
+        clear_ = std::move(s.clear);
         walls_.clear();
         fresh_ = false;
     }
 
 private:
     [[nodiscard]] detail::moving_surface moving() noexcept {
-        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_};
+        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_, .clear = clear_};
+    }
+    /// The largest volume that a vertex moves by in an iteration. O(vertices + faces).
+    [[nodiscard]] double largest_move() const {
+        std::vector<double> around(surface_.positions.size(), 0.0);
+        double largest = 0;
+        for (auto const& t : surface_.triangles) {
+            vec3 const& a = surface_.positions[t[0]];
+            double const twice = length(cross(vec3{surface_.positions[t[1]] - a}, vec3{surface_.positions[t[2]] - a}));
+            for (std::uint32_t const v : t) largest = std::max(largest, around[v] += twice);
+        }
+        return largest / 6 * (mean_edge_ / options_.step_divisor);
     }
     [[nodiscard]] std::uint64_t id_of(std::size_t i) const {
         if constexpr (requires { { fluid_.id(i) } -> std::same_as<std::uint64_t>; }) {
@@ -142,6 +151,7 @@ private:
         if (!fresh_) {
             rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
             moves_.adopt(moving());
+            clearance_.forget();
             fresh_ = true;
         }
         if (surface_.triangles.empty()) {
@@ -149,11 +159,7 @@ private:
             ++report_.iterations;
             return;
         }
-        if (walls_.empty()) {
-            walls_.emplace_back(surface_.positions, surface_.triangles, fluid_.reach());
-        } else {
-            walls_[0].refit(surface_.positions, surface_.triangles);
-        }
+        stand_walls();
         double const dt = ahead_ > 0 ? ahead_ : fluid_.step(walls_[0], threads);
         if (!(dt > 0 && std::isfinite(dt))) {
             detail::fail<invalid_input>(errc::bad_parameter, "hydraulic_run: the fluid advanced by " + detail::number_text(dt) + " s",
@@ -161,8 +167,9 @@ private:
         }
         // What the user wrote may throw up to here and no further; the next run then goes on behind the fluid's step.
         ahead_ = dt;
+        if (walls_[0].reach() != fluid_.reach()) stand_walls();
         double const most = mean_edge_ / options_.step_divisor;  // of the input: what grows or is split later changes no limit
-        std::int64_t gone = 0;
+        detail::volume_sum gone = 0;
         if constexpr (exchange_rule<Process>) {
             gone = loads_now_.follow(books_.load, fluid_.particle_count(), [&](std::size_t i) { return id_of(i); });
         }
@@ -171,6 +178,7 @@ private:
             displacement_.find(process_, {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_},
                                contacts_.points(), mean_edge_, most, next_, threads);
         }
+        if (options_.check_every > 0) look_around(most, threads);
         // Of what follows only memory may run out; the iteration is taken back then.
         keep();
         try {
@@ -186,7 +194,14 @@ private:
         ahead_ = 0;
     }
 
-    void wear(double most, std::int64_t gone) {
+    /// Where the surface is, and to the fluid's reach.
+    void stand_walls() {
+        if (!walls_.empty() && walls_[0].reach() == fluid_.reach()) return walls_[0].refit(surface_.positions, surface_.triangles);
+        walls_.clear();
+        walls_.emplace_back(surface_.positions, surface_.triangles, fluid_.reach());
+    }
+
+    void wear(double most, detail::volume_sum gone) {
         book_contacts(most);
         if constexpr (exchange_rule<Process>) {
             books_.left += gone;
@@ -201,6 +216,33 @@ private:
                           .carried = unit_.volume(books_.carried()), .left = unit_.volume(books_.left)};
     }
 
+    /// Gives a way to the vertices that may move in this iteration.
+    template <executor Executor>
+    void look_around(double most, Executor const& threads) {
+        std::size_t const n = surface_.positions.size();
+        if (clear_.size() != n || report_.iterations % options_.check_every == 0) clear_.assign(n, -1.0);
+        wet_.assign(n, 0);
+        if constexpr (exchange_rule<Process>) {
+            for (std::size_t v = 0; v < n; ++v) wet_[v] = books_.due[v] != 0 ? 1 : 0;
+            contacts_.for_each([&](detail::water_contacts::contact const& c) {
+                for (std::uint32_t const v : surface_.triangles[c.face]) wet_[v] = 1;
+            });
+            // What is due is passed on to neighbours before vertices move.
+            for (std::size_t v = 0; v < n; ++v) {
+                if ((wet_[v] & 1) == 0) continue;
+                for (std::uint32_t const w : rings_.neighbors(v)) wet_[w] |= 2;
+            }
+        } else {
+            for (std::size_t v = 0; v < n; ++v) wet_[v] = next_[v] == surface_.positions[v] ? 0 : 1;
+        }
+        movers_.clear();
+        for (std::size_t v = 0; v < n; ++v) {
+            if (wet_[v] != 0) movers_.push_back(static_cast<std::uint32_t>(v));
+        }
+        double const look = options_.check_every * most / detail::wall_clearance::share;
+        clearance_.find(moving(), movers_, look, clear_, threads);
+    }
+
     void keep() {
         kept_.positions = surface_.positions;
         kept_.wear = wear_;
@@ -208,6 +250,7 @@ private:
         kept_.sediment = sediment_;
         kept_.books = books_;
         kept_.report = report_;
+        kept_.clear = clear_;
     }
     void take_back() noexcept {
         std::swap(surface_.positions, kept_.positions);
@@ -215,6 +258,7 @@ private:
         std::swap(flow_, kept_.flow);
         std::swap(sediment_, kept_.sediment);
         std::swap(books_, kept_.books);
+        std::swap(clear_, kept_.clear);
         report_ = kept_.report;
         fresh_ = false;
     }
@@ -292,6 +336,7 @@ private:
         std::vector<std::int64_t> sediment{};
         detail::sediment_books books{};
         hydraulic_report report{};
+        std::vector<double> clear{};
     };
 
     Process process_;
@@ -314,6 +359,9 @@ private:
     detail::water_contacts contacts_{};
     detail::water_displacement displacement_{};
     before kept_{};
+    detail::wall_clearance clearance_{};
+    std::vector<double> clear_{};         ///< way that vertices have to other walls, below 0 not known
+    std::vector<std::uint32_t> movers_{};
     std::vector<unsigned char> wet_{};
     std::vector<vec3> next_{};
     std::vector<double> wear_{};

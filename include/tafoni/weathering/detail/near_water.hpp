@@ -26,7 +26,7 @@ public:
     void find(std::span<vec3 const> points, std::span<vec3 const> vertices, double reach, std::span<double> square,
               E const& threads) {
         std::fill(square.begin(), square.end(), std::numeric_limits<double>::infinity());
-        if (points.empty() || vertices.empty()) return;
+        if (points.empty() || vertices.empty() || !(reach > 0)) return;
         box3 box;
         for (vec3 const& p : points) box.include(p);
         lay_out(box, reach, 4 * static_cast<double>(points.size() + vertices.size()));

@@ -11,6 +11,9 @@
 
 namespace tafoni::detail {
 
+/// Totals of a run: what all vertices move by in all iterations, in whole units.
+__extension__ using volume_sum = __int128;
+
 /// Loads in whole units, in the order in which the fluid numbers its particles, with the ids that last.
 class particle_loads {
 public:
@@ -22,7 +25,7 @@ public:
     /// The loads of `then` for the particles there are now; returns what those that are gone carried. Most particles
     /// keep their numbers, and those that do not are looked up: O(n + k log k) where k have others.
     template <class Id>
-    std::int64_t follow(particle_loads const& then, std::size_t n, Id const& id) {
+    volume_sum follow(particle_loads const& then, std::size_t n, Id const& id) {
         all_.resize(n);
         strange_.clear();
         lost_.clear();
@@ -42,13 +45,13 @@ public:
             auto const at = std::lower_bound(lost_.begin(), lost_.end(), all_[i].id, [](entry const& e, std::uint64_t k) { return e.id < k; });
             if (at != lost_.end() && at->id == all_[i].id) all_[i].units = std::exchange(at->units, 0);
         }
-        std::int64_t gone = 0;
+        volume_sum gone = 0;
         for (entry const& e : lost_) gone += e.units;
         return gone;
     }
 
-    [[nodiscard]] std::int64_t sum() const noexcept {
-        std::int64_t s = 0;
+    [[nodiscard]] volume_sum sum() const noexcept {
+        volume_sum s = 0;
         for (entry const& e : all_) s += e.units;
         return s;
     }

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,11 +25,12 @@ namespace tafoni::detail {
 class volume_unit {
 public:
     volume_unit() = default;
-    /// 2^-50 of a volume that nothing in the scene exceeds.
+    /// 2^-46 of the largest volume that a vertex moves by in an iteration: a grain for the slowest rule, and room for
+    /// 2^17 such moves of a vertex.
     explicit volume_unit(double largest) noexcept {
         int exponent = 0;
-        (void)std::frexp(largest > 0 ? largest : 1.0, &exponent);
-        unit_ = std::ldexp(1.0, exponent - 50);
+        (void)std::frexp(largest > 0 && std::isfinite(largest) ? largest : 1.0, &exponent);
+        unit_ = std::ldexp(1.0, std::clamp(exponent - 46, -1000, 1000));
         inverse_ = 1 / unit_;
     }
     /// Nearest; what is beyond 2^56 units is cut there, so that sums of some do not overflow.
@@ -36,7 +38,7 @@ public:
         double const n = std::floor(volume * inverse_ + 0.5);
         return static_cast<std::int64_t>(std::clamp(n, -0x1p56, 0x1p56));
     }
-    [[nodiscard]] double volume(std::int64_t units) const noexcept { return static_cast<double>(units) * unit_; }
+    [[nodiscard]] double volume(volume_sum units) const noexcept { return static_cast<double>(units) * unit_; }
 
 private:
     double unit_ = 1;
@@ -47,12 +49,12 @@ private:
 struct sediment_books {
     particle_loads load{};
     std::vector<std::int64_t> due{};  ///< per vertex
-    std::int64_t eroded = 0;
-    std::int64_t deposited = 0;
-    std::int64_t left = 0;
+    volume_sum eroded = 0;
+    volume_sum deposited = 0;
+    volume_sum left = 0;
 
-    [[nodiscard]] std::int64_t carried() const noexcept {
-        std::int64_t sum = load.sum();
+    [[nodiscard]] volume_sum carried() const noexcept {
+        volume_sum sum = load.sum();
         for (std::int64_t const v : due) sum += v;
         return sum;
     }
@@ -148,11 +150,12 @@ public:
                     vec3 const to{p[0] + share * room.sum[0], p[1] + share * room.sum[1], p[2] + share * room.sum[2]};
                     vec3 const step{to - p};
                     std::int64_t booked = unit.fixed(dot(step, room.sum) / 6);
-                    if (d == wanted) booked = books.due[v];  // the rest is rounding
+                    // All of it, but for what so small a step loses where coordinates are large.
+                    if (d == wanted && std::abs(books.due[v] - booked) <= std::abs(books.due[v]) >> 10) booked = books.due[v];
                     if (booked == 0) break;
                     if (!moves.allows(v, to, room, s)) continue;
                     s.positions[v] = to;
-                    moves.went(v, s);
+                    moves.went(v, length(step), s);
                     wear[v] += length(step);
                     sediment[v] += booked;
                     books.due[v] -= booked;
@@ -211,7 +214,7 @@ inline void follow(moving_surface const& s, std::span<vec3> next, sound_moves& m
             vec3 const to{p[0] + share * step[0], p[1] + share * step[1], p[2] + share * step[2]};
             if (!moves.allows(v, to, room, s)) continue;
             s.positions[v] = next[v] = to;
-            moves.went(v, s);
+            moves.went(v, share * far, s);
             break;
         }
     }

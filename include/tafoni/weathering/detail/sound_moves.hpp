@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,11 @@ struct vertex_room {
     double area = 0;     ///< |sum|
     double whole = 0;    ///< twice the area around; area / whole is the mean cosine between faces and normal
     double lowest = 0;   ///< least altitude of a triangle over the side opposite the vertex, length unit
+    double clear = std::numeric_limits<double>::infinity();  ///< way before other walls could be met, length unit
 
     /// How far the vertex may go in one iteration: no triangle at it turns by more than about 14 degrees.
     [[nodiscard]] double way(double most) const noexcept {
-        return area > 0.2 * whole ? std::min(most, 0.25 * lowest) : 0.0;
+        return area > 0.2 * whole ? std::min({most, 0.25 * lowest, clear}) : 0.0;
     }
     /// The volume that goes with it, at most.
     [[nodiscard]] double volume(double most) const noexcept { return way(most) * area / 6; }
@@ -37,6 +39,7 @@ struct moving_surface {
     std::span<vec3> positions;
     std::span<std::array<std::uint32_t, 3> const> triangles;
     vertex_rings const& rings;
+    std::span<double> clear{};  ///< way that each vertex has left, below 0 none; empty: any
 };
 
 /// Knows the triangles of a surface whose vertices move one after the other, and refuses what
@@ -48,7 +51,9 @@ class sound_moves {
 public:
     /// Looks at triangles and vertices that are others than before. O(vertices + faces).
     void adopt(moving_surface const& s) {
-        auto const& [positions, triangles, rings] = s;
+        std::span<vec3> const positions = s.positions;
+        auto const triangles = s.triangles;
+        vertex_rings const& rings = s.rings;
         across_.assign(triangles.size(), {none, none, none});
         faces_.resize(triangles.size());
         for (std::size_t f = 0; f < triangles.size(); ++f) {
@@ -84,6 +89,7 @@ public:
             if (lowest < 0 || height < lowest) lowest = height;
         }
         out.area = length(out.sum);
+        if (!s.clear.empty()) out.clear = std::max(s.clear[v], 0.0);
         out.lowest = lowest > 0 ? std::sqrt(lowest) : 0.0;
         return out;
     }
@@ -120,8 +126,9 @@ public:
         }
         return true;
     }
-    /// v has gone where `allows` was last asked about.
-    void went(std::size_t v, moving_surface const& s) noexcept {
+    /// v has gone where `allows` was last asked about, `way` far.
+    void went(std::size_t v, double way, moving_surface const& s) noexcept {
+        if (!s.clear.empty()) s.clear[v] = std::max(s.clear[v] - way, 0.0);
         auto const around = s.rings.faces(v);
         for (std::size_t k = 0; k < around.size(); ++k) faces_[around[k].face] = then_[k];
     }

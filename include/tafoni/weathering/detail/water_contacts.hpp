@@ -54,7 +54,7 @@ public:
                         if (out.contacts.size() == before) load = loads.all()[i].units;
                         taken = exchanged(process, {.position = p, .velocity = fluid.velocity(i), .normal = c.normal,
                                                     .distance = c.distance, .reach = reach}, unit, dt);
-                        taken = std::max(taken, -load);
+                        taken = std::clamp(taken, -load, most_load - load);
                         load += taken;
                     }
                     out.contacts.push_back({c.face, static_cast<std::uint32_t>(i), taken});
@@ -83,6 +83,7 @@ public:
 
 private:
     static constexpr std::size_t grain = 2048;
+    static constexpr std::int64_t most_load = std::int64_t{1} << 60;  ///< that a particle carries, units
     static constexpr double pi = 3.14159265358979323846;
 
     struct block {

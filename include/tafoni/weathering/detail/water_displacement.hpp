@@ -4,6 +4,7 @@
 #define TAFONI_WEATHERING_DETAIL_WATER_DISPLACEMENT_HPP
 
 #include <tafoni/core/elementary.hpp>
+#include <tafoni/core/error.hpp>
 #include <tafoni/core/executor.hpp>
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/displacement.hpp>
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tafoni::detail {
@@ -56,6 +58,10 @@ public:
                 double const hard = std::max(process.durability(p), 1e-3);
                 double const d = std::min(strength / hard, 1.0) * most * nearness;
                 next[v] = vec3{p[0] + d * way[0], p[1] + d * way[1], p[2] + d * way[2]};
+                if (is_finite(next[v])) continue;
+                fail<invalid_input>(errc::out_of_range, "hydraulic_run: estimator or durability move vertex " + std::to_string(v) +
+                                                            " to a place that is not finite",
+                                    {.kind = entity::vertex, .index = v});
             }
         });
     }
