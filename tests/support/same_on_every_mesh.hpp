@@ -1,4 +1,4 @@
-// What a mesh type has to show: every estimator and a weathering run give the bits that they give on plain triangles.
+// What a mesh type has to show: every estimator and every run over it give the bits that they give on plain triangles.
 #ifndef TAFONI_TESTS_SUPPORT_SAME_ON_EVERY_MESH_HPP
 #define TAFONI_TESTS_SUPPORT_SAME_ON_EVERY_MESH_HPP
 
@@ -9,8 +9,10 @@
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/curvature/quadric_fit.hpp>
 #include <tafoni/curvature/tensor_fit.hpp>
+#include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/testing/mesh_laws.hpp>
 #include <tafoni/weathering/curvature_run.hpp>
+#include <tafoni/weathering/hydraulic_run.hpp>
 
 #include <bit>
 #include <cmath>
@@ -52,6 +54,23 @@ template <tafoni::polygon_mesh M>
     ours.run(5);
     theirs.run(5);
     if (!(ours.surface() == theirs.surface()) || ours.report().iterations != 5) out.push_back("curvature_run");
+    auto const under_rain = [&](char const* name, auto const& process) {
+        tafoni::box3 box;
+        for (tafoni::vec3 const& p : plain.positions) box.include(p);
+        tafoni::box_emitter const cloud{.box = {.lo = tafoni::vec3{box.lo[0], box.lo[1], box.hi[2] + 0.1}, .hi = tafoni::vec3{box.hi[0], box.hi[1], box.hi[2] + 0.2}}};
+        tafoni::box_sink const sink{.keep = {.lo = tafoni::vec3{box.lo[0] - 1, box.lo[1] - 1, box.lo[2] - 1}, .hi = tafoni::vec3{box.hi[0] + 1, box.hi[1] + 1, box.hi[2] + 1}}};
+        tafoni::rain_particles const rain(cloud, sink, {.particles = 300, .radius = 0.1});
+        tafoni::hydraulic_run wet(mesh, rain, process);
+        tafoni::hydraulic_run same(plain, rain, process);
+        wet.run(20);
+        same.run(20);
+        if (!(wet.surface() == same.surface()) || wet.report().ledger.eroded != same.report().ledger.eroded ||
+            !(same.report().ledger.eroded > 0)) {
+            out.push_back(name);
+        }
+    };
+    under_rain("hydraulic_run by stress", tafoni::partheniades_erosion{.coefficient = 1e-3, .critical = 0});
+    under_rain("hydraulic_run by curvature", tafoni::curvature_erosion<>{});
     return out;
 }
 
