@@ -26,6 +26,8 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--radius", a.radius, "at which a particle touches rock; default: the mean edge")->check(between(1e-300, 1e100));
     c->add_option("--friction", a.friction, "of rain: share of the velocity lost on rock per second; default: by gravity and L")->check(between(0.0, 1e6));
     c->add_option("--lifetime", a.lifetime, "of rain: seconds until a drop seeps away; default: by gravity and L")->check(between(1e-12, 1e12));
+    c->add_option("--adhesion", a.adhesion, "of rain: pull of rock on a drop that touches it, over gravity; default: 0.8")->check(between(0.0, 10.0));
+    c->add_option("--frame", a.frame, "seconds that an iteration takes; 0: one stable step; default: 0, with sph by gravity and L")->check(between(0.0, 1e12));
     c->add_option("--viscosity", a.viscosity, "of sph: length unit^2 / s; default: by gravity and L")->check(between(0.0, 1e100));
     c->add_option("--k", a.k, "FIELD, erosion rate of partheniades; default: by gravity and L");
     c->add_option("--tau-c", a.tau_c, "FIELD, stress below which particles lay down; default: by gravity and L");
@@ -38,6 +40,7 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--durability", a.durability, "FIELD that divides the erosion of either model")->capture_default_str();
     c->add_option("--step", a.step, "no vertex moves farther in an iteration than the mean edge over this; default: 10, with sph, whose steps are short, 100")->check(between(1.0, 1e100));
     c->add_option("--refine", a.refine, "edges under water longer than this are split; 0: none")->check(between(0.0, 1e100))->capture_default_str();
+    c->add_option("--check-every", a.check_every, "iterations between looks at the walls around moving vertices, so that they do not cut each other; 0: never")->capture_default_str();
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
     c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/hydraulic.checkpoint");

@@ -15,6 +15,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
+#include <utility>
 #include <span>
 
 namespace weather {
@@ -25,14 +27,21 @@ namespace {
 
 /// `x0,y0,z0,x1,y1,z1`.
 box3 parse_box(std::string const& option, std::string const& text) {
+    if (std::count(text.begin(), text.end(), ',') != 5) throw usage_error(option + " " + text + ": six numbers x0,y0,z0,x1,y1,z1 are needed");
     std::size_t comma = 0;
     for (int n = 0; n < 3 && comma != std::string::npos; ++n) comma = text.find(',', comma + (n > 0 ? 1 : 0));
-    if (comma == std::string::npos) throw usage_error(option + " " + text + ": six numbers x0,y0,z0,x1,y1,z1 are needed");
     box3 out{.lo = parse_vector(option, text.substr(0, comma)), .hi = parse_vector(option, text.substr(comma + 1))};
     for (int d = 0; d < 3; ++d) {
         if (!(out.lo[d] <= out.hi[d])) throw usage_error(option + " " + text + ": the box is empty");
     }
     return out;
+}
+
+/// Options that are given but have no effect are refused.
+void only_with(char const* choice, bool chosen, std::initializer_list<std::pair<char const*, bool>> options) {
+    for (auto const& [name, given] : options) {
+        if (given && !chosen) throw usage_error(std::string(name) + " has an effect only with " + choice);
+    }
 }
 
 int axis_of(vec3 const& up) {
@@ -75,7 +84,13 @@ std::vector<std::string> hydraulic_fluids() { return {"rain", "sph"}; }
 hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
     : a_(a), progress_(progress_style_of(a.progress)), threads_(a.threads), out_(a.output, a.formats, vec3{0, 0, 0}),
       estimator_(parse_estimator(a.estimator)) {
-    // What cannot be read is told before the work begins.
+    // What cannot be read, or would have no effect, is told before the work begins.
+    bool const rain = a_.fluid == "rain";
+    bool const shear = a_.model == "partheniades";
+    only_with("--fluid rain", rain, {{"--friction", a_.friction >= 0}, {"--lifetime", a_.lifetime > 0}, {"--adhesion", a_.adhesion >= 0}});
+    only_with("--fluid sph", !rain, {{"--viscosity", a_.viscosity >= 0}});
+    only_with("--model partheniades", shear, {{"--k", !a_.k.empty()}, {"--tau-c", !a_.tau_c.empty()}});
+    only_with("--model curvature", !shear, {{"--influence", a_.influence > 0}, {"--power", a_.power != 1}});
     static_cast<void>(up());
     static_cast<void>(parse_vector("--velocity", a_.velocity));
     if (!a_.emitter.empty()) static_cast<void>(parse_box("--emitter", a_.emitter));
@@ -115,13 +130,16 @@ void hydraulic_session::settle() {
     w.radius = a_.radius > 0 ? a_.radius : edge;
     w.friction = a_.friction >= 0 ? a_.friction : 0.8 / fall;
     w.lifetime = a_.lifetime > 0 ? a_.lifetime : 15 * fall;
+    w.adhesion = a_.adhesion >= 0 ? a_.adhesion : 0.8;
     w.largest_step = 0.1 * fall;
     w.viscosity = a_.viscosity >= 0 ? a_.viscosity : 0.02 * speed * w.radius;
     double const stress = speed / edge;  // of water as thick as an edge at that speed
     w.tau_c = a_.tau_c.empty() ? text_of(0.1 * stress) : a_.tau_c;
-    w.k = a_.k.empty() ? text_of(0.015 * size / (fall * stress)) : a_.k;
+    bool const sph = a_.fluid == "sph";  // stands a radius off the rock, and moves slowly there
+    w.k = a_.k.empty() ? text_of((sph ? 0.015 : 0.0015) * size / (fall * stress)) : a_.k;
+    w.frame = a_.frame >= 0 ? a_.frame : sph ? 0.005 * fall : 0.0;
     w.influence = a_.influence > 0 ? a_.influence : edge;
-    w.step = a_.step >= 1 ? a_.step : a_.fluid == "sph" ? 100 : 10;
+    w.step = a_.step >= 1 ? a_.step : sph ? 100 : 10;
     int const axis = axis_of(w.up);
     bool const rises = w.up[axis] > 0;
     box3 const& b = input_.bounds;
@@ -178,18 +196,18 @@ bool hydraulic_session::run() {
 
 template <class Process>
 void hydraulic_session::run_process(Process const& process) {
-    hydraulic_options const options{.step_divisor = water_.step, .refine_length = a_.refine};
+    hydraulic_options const options{.step_divisor = water_.step, .refine_length = a_.refine, .check_every = a_.check_every};
     if (a_.fluid == "sph") {
         sph<float> const water(water_.emitter, water_.sink,
                                {.particles = a_.particles, .spacing = water_.radius, .viscosity = water_.viscosity,
-                                .gravity = water_.gravity, .largest_step = water_.largest_step});
+                                .gravity = water_.gravity, .largest_step = water_.largest_step, .frame = water_.frame});
         hydraulic_run run(input_.surface, water, process, options);
         run_with(run);
         return;
     }
     rain_particles const rain(water_.emitter, water_.sink,
                               {.particles = a_.particles, .radius = water_.radius, .gravity = water_.gravity, .friction = water_.friction,
-                               .largest_step = water_.largest_step, .lifetime = water_.lifetime, .seed = a_.seed});
+                               .adhesion = water_.adhesion, .largest_step = water_.largest_step, .frame = water_.frame, .lifetime = water_.lifetime, .seed = a_.seed});
     hydraulic_run run(input_.surface, rain, process, options);
     run_with(run);
 }
@@ -310,9 +328,9 @@ void hydraulic_session::write_report(Run const& run) const {
     j["parameters"] = {{"model", a_.model}, {"fluid", a_.fluid}, {"iterations", a_.iterations}, {"particles", a_.particles},
                        {"emitter", {{"lo", json_of(w.emitter.box.lo)}, {"hi", json_of(w.emitter.box.hi)}}},
                        {"velocity", json_of(w.emitter.velocity)}, {"gravity", json_of(w.gravity)}, {"radius", w.radius},
-                       {"friction", w.friction}, {"lifetime", w.lifetime}, {"viscosity", w.viscosity}, {"k", w.k}, {"tau_c", w.tau_c},
+                       {"friction", w.friction}, {"lifetime", w.lifetime}, {"adhesion", w.adhesion}, {"frame", w.frame}, {"viscosity", w.viscosity}, {"k", w.k}, {"tau_c", w.tau_c},
                        {"a", a_.a}, {"K", a_.K}, {"m", a_.m}, {"influence", w.influence}, {"power", a_.power}, {"estimator", a_.estimator},
-                       {"durability", a_.durability}, {"step", w.step}, {"refine", a_.refine}, {"snapshots", a_.snapshots},
+                       {"durability", a_.durability}, {"step", w.step}, {"refine", a_.refine}, {"check_every", a_.check_every}, {"snapshots", a_.snapshots},
                        {"format", a_.formats}};
     j["mesh"] = json_of(input_);
     j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};

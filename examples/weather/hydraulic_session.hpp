@@ -37,6 +37,8 @@ private:
         double radius = 1;
         double friction = 1;
         double lifetime = 1;
+        double frame = 0;  ///< s that an iteration takes; 0: one stable step
+        double adhesion = 0.8;
         double largest_step = 1;
         double viscosity = 0;
         std::string k;

@@ -42,6 +42,8 @@ bad hydraulic radius radius --radius 0
 bad hydraulic friction friction --friction -1
 bad hydraulic lifetime lifetime --lifetime nan
 bad hydraulic viscosity viscosity --viscosity -1
+bad hydraulic adhesion adhesion --adhesion 11
+bad hydraulic frame frame --frame -1
 bad hydraulic k "--k -1" --k -1
 bad hydraulic tau_c "--tau-c x" --tau-c x
 bad hydraulic exponent "--a 0" --a 0
@@ -186,7 +188,9 @@ for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300";
         diff -r "$kind/$file" "$kind"_on/$file > diff.log || complain "$kind: a resumed run ends with another $file"
     done
     cmp "$kind".bin "$kind"_on.bin || complain "$kind: a resumed run ends with another checkpoint"
-    for other in "--influence 0.01 --k 0.001" "--step 7" "--refine 0.5" "--particles 17" "--viscosity 0.5 --lifetime 2" "--durability 2" "--gravity 0,0,-9"; do
+    case $1 in curvature) rock="--influence 0.01" ;; *) rock="--k 0.001" ;; esac
+    case $2 in rain) wet="--lifetime 2" ;; *) wet="--viscosity 0.5" ;; esac
+    for other in "$rock" "$wet" "--step 7" "--refine 0.5" "--particles 17" "--frame 0.003" "--check-every 3" "--durability 2" "--gravity 0,0,-9"; do
         case $other in --particles*) drops="--model $1 --fluid $2" ;; *) drops=$water ;; esac
         expect 1 other "$weather" hydraulic $flow -o none $drops --iterations 60 --resume half.bin $other
     done
@@ -196,7 +200,7 @@ for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300";
     expect 1 foreign "$weather" hydraulic $flow -o none $water --iterations 60 --resume end1
     [ ! -e none ] || complain "a refused resume of water made its folder"
     ledger "$kind"
-    for key in schema version process seed parameters gravity emitter radius k tau_c influence keep threads stopped repaired iterations time \
+    for key in schema version process seed parameters gravity emitter radius adhesion frame k tau_c influence check_every keep threads stopped repaired iterations time \
         particles contacts ledger eroded deposited carried left vertices_added largest_wear seconds read weather write; do
         grep -q "\"$key\":" "$kind/report.json" || complain "$kind: report.json has no $key"
     done
@@ -218,6 +222,14 @@ ridge="builtin:bust:resolution=20 --particles 800 --format obj --progress none"
     expect 0 soft "$weather" hydraulic $ridge -o soft --iterations 120 --k layers:values=0.0001,0.01 --tau-c ramp:low=0,high=9 --a 1.2 --K 2 --m noise:low=0.8,high=1.2 --durability 2
     ledger soft
     expect 0 sideways "$weather" hydraulic $ridge -o sideways --iterations 60 --up=-x --emitter 0.4,-0.1,0.3,0.5,0.1,0.8 --velocity=-1,0,0
+    expect 0 sheer "$weather" hydraulic $ridge -o sheer --iterations 120 --seed 1 --adhesion 0
+    cmp -s pour/weathered.obj sheer/weathered.obj && complain "adhesion changes nothing"
+    expect 0 framed "$weather" hydraulic $ridge -o framed --iterations 40 --frame 0.01
+    holds "($(number framed time) - 0.4)^2 < 1e-18 && $(number framed frame) == 0.01" framed
+    expect 0 watched "$weather" hydraulic $ridge -o watched --iterations 60 --step 3 --k 1 --check-every 2
+    ledger watched
+    "$weather" hydraulic --help > water.help
+    for option in adhesion frame check-every; do grep -q -e "--$option" water.help || complain "hydraulic --help has no --$option"; done
     expect 0 still "$weather" hydraulic $ridge -o still --iterations 0
     holds "$(number still eroded) == 0 && $(number still iterations) == 0" still
 }
