@@ -22,13 +22,14 @@ CLI::App* add_curvature_command(CLI::App& app, curvature_arguments& a) {
     c->add_flag("--keep-topology", a.keep_topology, "vertices and triangles keep their numbers; no small faces are removed");
     c->add_option("--small-edge", a.small_edge, "edges below this share of the mean edge are removed")->check(between(0.0, 0.5))->capture_default_str();
     c->add_option("--check-every", a.check_every, "iterations between searches for triangles that cut each other; 0: never")->capture_default_str();
-    c->add_option("--retries", a.retries, "how often the step may be halved where a search finds some")->check(CLI::Range(0u, 60u))->capture_default_str();
+    c->add_option("--retries", a.retries, "how often in a row the surface may be taken back where a search finds some")->check(CLI::Range(0u, 60u))->capture_default_str();
+    c->add_option("--hold-after", a.hold_after, "halvings of the step after which vertices that still cut are held still; as many as --retries: never")->check(CLI::Range(0u, 60u))->capture_default_str();
     c->add_flag("--map", a.map, "write map.txt: the vertex now of each vertex of INPUT, one per line");
     add_up(*c, a.up);
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
     c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/curvature.checkpoint");
-    c->add_option("--resume", a.resume, "checkpoint to go on from");
+    c->add_option("--resume", a.resume, "checkpoint to go on from; INPUT and all options must be given again as they were");
     return c;
 }
 

@@ -26,6 +26,7 @@ struct curvature_arguments {
     double small_edge = 0.1;
     std::uint32_t check_every = 0;
     std::uint32_t retries = 6;
+    std::uint32_t hold_after = 2;
     bool map = false;                 ///< write where each vertex of the input went
     std::string up = "z";
     std::uint64_t seed = 1;

@@ -69,11 +69,15 @@ void curvature_session::run_with(Direction direction) {
     estimator.radius = a_.ball;
     curvature_options const options{.power = a_.power, .step_divisor = a_.step, .small_edge = a_.small_edge,
                                     .topology = a_.keep_topology ? mesh_topology::keep : mesh_topology::adapt,
-                                    .check_every = a_.check_every, .retries = a_.retries};
+                                    .check_every = a_.check_every, .retries = a_.retries, .hold_after = a_.hold_after};
     curvature_run run(input_.surface, curvature_weathering{.estimator = estimator, .direction = direction, .durability = durability_}, options);
     if (!a_.resume.empty()) {
         std::string const bytes = load_bytes(a_.resume);
-        run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+        try {
+            run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+        } catch (io_error const& e) {
+            detail::fail<io_error>(e.code(), a_.resume + ": " + e.what(), {.kind = entity::file, .file = a_.resume});
+        }
         if (run.report().iterations > a_.iterations) {
             throw usage_error("--iterations " + std::to_string(a_.iterations) + ": the checkpoint has " +
                               std::to_string(run.report().iterations));
@@ -97,6 +101,18 @@ void curvature_session::run_with(Direction direction) {
     std::fprintf(stderr, "%s: %llu iterations, %zu vertices, %llu edges collapsed, volume less by %.4g\n", a_.output.c_str(),
                  static_cast<unsigned long long>(r.iterations), run.surface().positions.size(),
                  static_cast<unsigned long long>(r.edges_collapsed), r.removed_volume);
+    if (r.held > 0) {
+        std::fprintf(stderr, "%llu vertices were held still, where triangles would have cut each other\n", static_cast<unsigned long long>(r.held));
+    }
+    if (r.stopped == curvature_stop::self_intersection) {
+        std::fprintf(stderr,
+                     "ended early, after %llu of %llu iterations: triangles would cut each other, however short the step; what may help: "
+                     "--estimator quadric, shorter steps (--step %g), a smaller --check-every, more --retries\n",
+                     static_cast<unsigned long long>(r.iterations), static_cast<unsigned long long>(a_.iterations), 3 * a_.step);
+    } else if (r.stopped == curvature_stop::worn_away && r.iterations < a_.iterations) {
+        std::fprintf(stderr, "ended early, after %llu of %llu iterations: nothing is left that curvature moves\n",
+                     static_cast<unsigned long long>(r.iterations), static_cast<unsigned long long>(a_.iterations));
+    }
 }
 
 template <class Run>
@@ -182,7 +198,7 @@ void curvature_session::write_report(Run& run) const {
     j["parameters"] = {{"iterations", a_.iterations}, {"power", a_.power}, {"step", a_.step}, {"estimator", a_.estimator},
                        {"ball", a_.estimator == "bubble" && a_.ball == 0 ? 3 * input_.mean_edge() : a_.ball}, {"direction", a_.direction},
                        {"durability", a_.durability}, {"keep_topology", a_.keep_topology}, {"small_edge", a_.small_edge},
-                       {"check_every", a_.check_every}, {"retries", a_.retries}, {"up", a_.up}, {"snapshots", a_.snapshots},
+                       {"check_every", a_.check_every}, {"retries", a_.retries}, {"hold_after", a_.hold_after}, {"up", a_.up}, {"snapshots", a_.snapshots},
                        {"format", a_.formats}};
     j["mesh"] = json_of(input_);
     j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};
@@ -194,6 +210,7 @@ void curvature_session::write_report(Run& run) const {
     j["faces"] = s.triangles.size();
     j["edges_collapsed"] = r.edges_collapsed;
     j["retries"] = r.retries;
+    j["held"] = r.held;
     j["step"] = r.step;
     j["volume_before"] = volume_of(input_.surface, input_.bounds);
     j["volume_removed"] = r.removed_volume;

@@ -27,7 +27,7 @@ CLI::App* add_wrinkles_command(CLI::App& app, wrinkles_arguments& a) {
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many times; 0: none")->capture_default_str();
     c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/wrinkles.checkpoint");
-    c->add_option("--resume", a.resume, "checkpoint to go on from");
+    c->add_option("--resume", a.resume, "checkpoint to go on from; INPUT and all options must be given again as they were");
     return c;
 }
 

@@ -192,7 +192,7 @@ bool wrinkles_session::run() {
     seconds_["write"] = watch.lap() + aside_;
     write_report(input, pattern, volume_of(result, input.bounds));
     progress_.show("write", 1);
-    std::fprintf(stderr, "%s: %zu wrinkles, %zu vertices added\n", a_.output.c_str(), lines.size(),
+    std::fprintf(stderr, "%s: %zu wrinkles, %zu enlargements, %zu vertices added\n", a_.output.c_str(), lines.size(), a_.enlargements.size(),
                  result.positions.size() - input.surface.positions.size());
     return !stopped_;
 }

@@ -101,6 +101,28 @@ struct punch {
         return at.normal[2] > 0.5 && x * x + y * y < 0.04 ? vec3{0, 0, -2.5} : vec3{0, 0, 0};
     }
 };
+struct stumbling_everywhere {
+    fuse at{};
+    void operator()(surface_view const& s, std::span<double> mean, executor auto const& x) const {
+        everywhere{}(s, mean, x);
+        at.burn();
+    }
+};
+struct one_bad_number {
+    double number = 0;
+    std::size_t at = 0;
+    void operator()(surface_view const& s, std::span<double> mean, executor auto const& x) const {
+        everywhere{}(s, mean, x);
+        mean[at] = number;
+    }
+};
+/// Pushes the middle of the upper sheet into the lower one, all the rest sinks.
+struct punch_and_sink {
+    [[nodiscard]] vec3 direction(wear_point const& at) const {
+        vec3 const down = punch{}.direction(at);
+        return down[2] < 0 ? vec3{0, 0, -0.4} : vec3{0, 0, -0.05};
+    }
+};
 /// Two sheets of n x n squares, one above the other.
 triangle_surface two_sheets(std::uint32_t n, double gap) {
     triangle_surface s;
@@ -125,6 +147,9 @@ triangle_surface two_sheets(std::uint32_t n, double gap) {
     }
     return s;
 }
+
+/// Thin walls that `punch_and_sink` drives through each other.
+triangle_surface pierced() { return two_sheets(10, 0.06); }
 
 }  // namespace
 
@@ -169,7 +194,7 @@ TEST_CASE("a step that makes triangles cut each other is taken back and halved, 
     hasty.run(1);
     CHECK(!self_intersections(hasty.surface().positions, s.triangles).empty());
 
-    curvature_run careful(s, process, {.check_every = 1});
+    curvature_run careful(s, process, {.check_every = 1, .hold_after = 6});  // nothing is held
     double before = 0;
     run_context context;
     context.on_progress = [&](progress_event const& e) {
@@ -197,6 +222,128 @@ TEST_CASE("a step that makes triangles cut each other is taken back and halved, 
     CHECK(last.stopped == curvature_stop::self_intersection);
     CHECK(last.retries == 7);
     CHECK(self_intersections(careful.surface().positions, s.triangles).empty());
+}
+
+TEST_CASE("where no shorter step helps, what would cut is held still and the rest goes on with the whole step") {
+    triangle_surface const s = pierced();
+    auto const process = curvature_weathering{.estimator = everywhere{}, .direction = punch_and_sink{}};
+    for (mesh_topology const topology : {mesh_topology::keep, mesh_topology::adapt}) {
+        curvature_run plain(s, process, {.topology = topology, .check_every = 4, .hold_after = 6});
+        CHECK(plain.run(60).stopped == curvature_stop::self_intersection);
+        CHECK(plain.report().iterations < 60);
+        CHECK(plain.report().held == 0);
+
+        curvature_options const options{.topology = topology, .check_every = 4};
+        curvature_run run(s, process, options);
+        curvature_report const r = run.run(60);
+        CHECK(r.stopped == curvature_stop::finished);
+        CHECK(r.iterations == 60);
+        CHECK(r.step == 0.1);
+        CHECK(r.held > 0);
+        CHECK(r.held < s.positions.size() / 2);
+        CHECK(self_intersections(run.surface().positions, run.surface().triangles).empty());
+        auto const corner = [](auto const& of) { return of.surface().positions[of.new_vertex()[0].value][2]; };
+        CHECK(corner(run) < 2 * corner(plain));  // it sinks as far as its iterations take it
+        // As many stay where they are as are held, all others sink.
+        triangle_surface const before = run.surface();
+        run.run(20);
+        triangle_surface const after = run.surface();
+        REQUIRE(before.positions.size() == after.positions.size());
+        std::size_t stayed = 0;
+        for (std::size_t v = 0; v < after.positions.size(); ++v) stayed += after.positions[v] == before.positions[v] ? 1U : 0U;
+        CHECK(stayed == run.report().held);
+
+        curvature_run threaded(s, process, options);
+        threaded.run(80, {}, thread_pool(3));
+        CHECK(threaded.checkpoint() == run.checkpoint());
+
+        // New options hold nothing.
+        run.replace(options);
+        CHECK(run.report().held == 0);
+        CHECK(run.report().step == 0.1);
+    }
+}
+
+TEST_CASE("n then m iterations equal n + m across a hold, wherever a scheduled search ends n, and so do resumed ones") {
+    triangle_surface const s = pierced();
+    auto const process = curvature_weathering{.estimator = everywhere{}, .direction = punch_and_sink{}};
+    curvature_options const options{.check_every = 4};
+    curvature_run whole(s, process, options);
+    whole.run(40);
+    auto const end = whole.checkpoint();
+    bool free = false;
+    bool held = false;
+    bool short_step = false;
+    for (std::uint64_t n = 4; n < 40; n += 4) {
+        curvature_run parts(s, process, options);
+        parts.run(n);
+        free = free || parts.report().held == 0;
+        held = held || parts.report().held > 0;
+        short_step = short_step || (parts.report().held > 0 && parts.report().step < 0.1);
+        curvature_run resumed(s, process, options);
+        resumed.resume(parts.checkpoint());
+        CHECK(resumed.checkpoint() == parts.checkpoint());
+        CHECK(resumed.report().held == parts.report().held);
+        parts.run(40 - n);
+        resumed.run(40 - n);
+        CHECK(parts.checkpoint() == end);
+        CHECK(resumed.checkpoint() == end);
+    }
+    CHECK(free);
+    CHECK(held);
+    CHECK(short_step);
+    // Saved by an observer between any two iterations, steps taken back included.
+    std::uint64_t const ticks = whole.report().iterations + 4 * whole.report().retries;
+    for (std::uint64_t k = 1; k < ticks; k += 3) {
+        curvature_run stopped(s, process, options);
+        run_context context;
+        std::uint64_t seen = 0;
+        context.on_progress = [&](progress_event const&) { return ++seen > k ? step_control::stop : step_control::proceed; };
+        stopped.run(40, context);
+        curvature_run resumed(s, process, options);
+        resumed.resume(stopped.checkpoint());
+        resumed.run(40 - resumed.report().iterations);
+        REQUIRE(resumed.checkpoint() == end);
+    }
+}
+
+TEST_CASE("what throws between a search and a hold leaves a run that goes on to the same bits") {
+    triangle_surface const s = pierced();
+    stumbling_everywhere const e;
+    auto const process = curvature_weathering{.estimator = e, .direction = punch_and_sink{}};
+    long const endless = std::numeric_limits<long>::max();
+    curvature_options const options{.check_every = 4};
+    curvature_run whole(s, process, options);
+    whole.run(24);
+    REQUIRE(whole.report().held > 0);
+    auto const end = whole.checkpoint();
+    long const calls = endless - e.at.left->load();
+    for (long k = 1; k <= calls; ++k) {
+        *e.at.left = endless;
+        curvature_run run(s, process, options);
+        *e.at.left = k;
+        CHECK_THROWS_AS(run.run(24), stumble);
+        *e.at.left = endless;
+        run.run(24 - run.report().iterations);
+        REQUIRE(run.checkpoint() == end);
+    }
+}
+
+TEST_CASE("what cut from the start is not held, what cuts later beside it is") {
+    triangle_surface s = pierced();
+    auto const first = static_cast<std::uint32_t>(s.positions.size());
+    for (vec3 const& p : {vec3{2, 0, 0}, vec3{3, 0, 0}, vec3{2, 1, 0}, vec3{2.2, 0.2, -1}, vec3{2.2, 0.2, 1}, vec3{2.4, 0.3, 1}}) s.positions.push_back(p);
+    s.triangles.push_back({first, first + 1, first + 2});
+    s.triangles.push_back({first + 3, first + 4, first + 5});
+    REQUIRE(self_intersections(s.positions, s.triangles).size() == 1);
+    curvature_run run(s, curvature_weathering{.estimator = everywhere{}, .direction = punch_and_sink{}},
+                      {.topology = mesh_topology::keep, .check_every = 4});
+    curvature_report const r = run.run(40);
+    CHECK(r.stopped == curvature_stop::finished);
+    CHECK(r.held > 0);
+    triangle_surface const end = run.surface();
+    CHECK(self_intersections(end.positions, end.triangles).size() == 1);
+    for (std::size_t v = first; v < s.positions.size(); ++v) CHECK(end.positions[v] != s.positions[v]);  // sank
 }
 
 TEST_CASE("searches between the ends of runs do not depend on where runs end") {
@@ -228,6 +375,22 @@ TEST_CASE("a policy that leaves the numbers is named with the vertex, and nothin
     };
     curvature_run soft(s, curvature_weathering{.durability = unknown{}});
     CHECK_THROWS_AS(soft.run(1), invalid_input);
+    for (double const bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity()}) {
+        for (std::size_t const at : {std::size_t{0}, std::size_t{7}, s.positions.size() - 1}) {
+            curvature_run lost(s, curvature_weathering{.estimator = one_bad_number{bad, at}});
+            try {
+                lost.run(1);
+                FAIL("accepted");
+            } catch (invalid_input const& e) {
+                CHECK(e.place().kind == entity::vertex);
+                CHECK(e.place().index == at);
+                CHECK_THAT(e.what(), Catch::Contains("curvature_run") && Catch::Contains("estimator") &&
+                                         Catch::Contains("vertex " + std::to_string(at)));
+            }
+            CHECK(lost.surface() == s);
+        }
+    }
 }
 
 TEST_CASE("the offset of a sphere has the radius R - d and its volume, with order two") {

@@ -113,8 +113,9 @@ private:
 class edge_collapser {
 public:
     /// `known` are the rings of the surface as it is, or null.
-    edge_collapser(triangle_surface& s, double threshold, vertex_rings const* known)
-        : surface_(s), limit_(threshold * threshold), known_(known) {}
+    /// `fixed` is empty or has a flag for each vertex; edges at those that it names stay.
+    edge_collapser(triangle_surface& s, double threshold, vertex_rings const* known, std::span<unsigned char const> fixed = {})
+        : surface_(s), limit_(threshold * threshold), known_(known), fixed_(fixed) {}
 
     /// Number of collapsed edges; `survivor` leads every vertex to the one that it became. O(faces).
     std::size_t pass(std::vector<std::uint32_t>& survivor) {
@@ -130,7 +131,8 @@ public:
         vertex_rings const& rings = known_ != nullptr ? *known_ : rings_;
         known_ = nullptr;
         collapse_rules rules(surface_.positions, surface_.triangles, rings);
-        touched_.assign(surface_.positions.size(), 0);
+        touched_.assign(fixed_.begin(), fixed_.end());
+        touched_.resize(surface_.positions.size(), 0);
         std::size_t done = 0;
         for (short_edge const& e : edges) {
             auto const [u, v] = e.ends;
@@ -179,6 +181,7 @@ private:
     triangle_surface& surface_;
     double limit_;
     vertex_rings const* known_;
+    std::span<unsigned char const> fixed_;
     vertex_rings rings_{};
     std::vector<unsigned char> touched_{};
 };
@@ -196,12 +199,13 @@ struct collapse_short_edges_fn {
         return trusted(surface, threshold, nullptr);
     }
 
-    /// Of a surface that is known to be valid, with its rings where they are known.
-    static collapse_report trusted(triangle_surface& surface, double threshold, vertex_rings const* known) {
+    /// Of a surface that is known to be valid, with its rings where they are known; `fixed` as `edge_collapser`.
+    static collapse_report trusted(triangle_surface& surface, double threshold, vertex_rings const* known,
+                                   std::span<unsigned char const> fixed = {}) {
         collapse_report report;
         std::vector<std::uint32_t> survivor(surface.positions.size());
         for (std::size_t v = 0; v < survivor.size(); ++v) survivor[v] = static_cast<std::uint32_t>(v);
-        edge_collapser collapser(surface, threshold, known);
+        edge_collapser collapser(surface, threshold, known, fixed);
         for (int pass = 0; pass < most_passes; ++pass) {
             std::size_t const done = collapser.pass(survivor);
             if (done == 0) break;

@@ -25,6 +25,7 @@ struct curvature_state {
     std::vector<vertex_index> new_vertex{};  ///< vertex of the input -> vertex now
     std::vector<double> wear{};
     std::vector<vertex_index> input_of{};    ///< vertex now -> that of the input it still is, or not valid
+    std::vector<unsigned char> held{};       ///< vertex now -> whether it is held still; empty: none is
     std::uint64_t iterations = 0;
     std::uint64_t edges_collapsed = 0;
 };
@@ -34,6 +35,7 @@ struct curvature_checkpoint {
     curvature_state now{};
     curvature_state safe{};   ///< empty where no searches are made
     std::uint64_t retries = 0;
+    std::uint64_t holds = 0;  ///< since the last sound search
     double step = 0;
 };
 
@@ -42,7 +44,8 @@ template <class Process>
 [[nodiscard]] std::uint64_t parameter_hash(Process const& process, curvature_options const& o, std::span<vec3 const> input) {
     number_hash h;
     for (double const v : {o.power, o.step_divisor, o.small_edge}) h.add(v);
-    for (auto const v : {static_cast<std::uint64_t>(o.topology), std::uint64_t{o.check_every}, std::uint64_t{o.retries}}) h.add(v);
+    for (auto const v : {static_cast<std::uint64_t>(o.topology), std::uint64_t{o.check_every}, std::uint64_t{o.retries},
+                         std::uint64_t{o.hold_after}}) h.add(v);
     add_policy(h, process.estimator);
     add_policy(h, process.direction);
     for (vec3 const& p : input) h.add(static_cast<double>(process.durability(p)));
@@ -50,7 +53,7 @@ template <class Process>
 }
 
 inline constexpr std::uint64_t curvature_checkpoint_magic = 0x7275632D66617400ULL;  // "\0taf-cur"
-inline constexpr std::uint64_t curvature_checkpoint_version = 1;
+inline constexpr std::uint64_t curvature_checkpoint_version = 2;
 
 inline void put_state(byte_writer& out, curvature_state const& s) {
     for (std::size_t const n : {s.surface.positions.size(), s.surface.triangles.size(), s.new_vertex.size()}) out.put(n);
@@ -63,15 +66,17 @@ inline void put_state(byte_writer& out, curvature_state const& s) {
     for (vertex_index const v : s.new_vertex) out.put(v.value, 4);
     for (double const w : s.wear) out.put(std::bit_cast<std::uint64_t>(w));
     for (vertex_index const v : s.input_of) out.put(v.value, 4);
+    out.put(s.held.empty() ? 0 : 1, 1);
+    for (unsigned char const c : s.held) out.put(c, 1);
     out.put(s.iterations);
     out.put(s.edges_collapsed);
 }
 
-/// Magic, version, hashes of the input and of the parameters, step, retries, one or two states, hash. O(vertices + faces).
+/// Magic, version, hashes of the input and of the parameters, step, retries, holds, one or two states, hash. O(vertices + faces).
 [[nodiscard]] inline std::vector<std::byte> write_checkpoint(curvature_checkpoint const& c, std::uint64_t input,
                                                              std::uint64_t parameters) {
     byte_writer out;
-    out.reserve(256 + 60 * (c.now.surface.positions.size() + c.safe.surface.positions.size()) +
+    out.reserve(256 + 61 * (c.now.surface.positions.size() + c.safe.surface.positions.size()) +
                 12 * (c.now.surface.triangles.size() + c.safe.surface.triangles.size()));
     out.put(curvature_checkpoint_magic);
     out.put(curvature_checkpoint_version, 4);
@@ -79,6 +84,7 @@ inline void put_state(byte_writer& out, curvature_state const& s) {
     out.put(parameters);
     out.put(std::bit_cast<std::uint64_t>(c.step));
     out.put(c.retries);
+    out.put(c.holds);
     put_state(out, c.now);
     put_state(out, c.safe);
     out.put(byte_hash(out.bytes()));
@@ -109,6 +115,7 @@ public:
         c.step = real();
         if (!(c.step > 0 && c.step <= 1)) bad("the step is out of range");
         c.retries = in_.get();
+        c.holds = in_.get();
         c.now = state();
         c.safe = state();
         if (c.now.new_vertex.size() != inputs_) bad("the counts do not fit the mesh");
@@ -131,6 +138,12 @@ private:
         v.value = static_cast<std::uint32_t>(in_.get(4));
         if (v.value >= below) bad("a vertex is out of range");
         return v;
+    }
+
+    [[nodiscard]] bool flag() {
+        std::uint64_t const f = in_.get(1);
+        if (f > 1) bad("a flag is neither 0 nor 1");
+        return f == 1;
     }
 
     [[nodiscard]] curvature_state state() {
@@ -161,6 +174,8 @@ private:
             v.value = static_cast<std::uint32_t>(in_.get(4));
             if (v.valid() && v.value >= inputs_) bad("a vertex is out of range");
         }
+        if (flag()) s.held.resize(s.surface.positions.size());
+        for (unsigned char& c : s.held) c = flag() ? 1 : 0;
         s.iterations = in_.get();
         s.edges_collapsed = in_.get();
         return s;

@@ -15,6 +15,7 @@
 #include <tafoni/weathering/detail/border_neighbors.hpp>
 #include <tafoni/weathering/detail/door_scale.hpp>
 #include <tafoni/weathering/detail/edge_lengths.hpp>
+#include <tafoni/weathering/detail/held_vertices.hpp>
 
 #include <algorithm>
 #include <array>
@@ -34,8 +35,8 @@ namespace tafoni {
 enum class curvature_stop : std::uint8_t {
     finished,
     observer,           ///< an observer said stop
-    self_intersection,  ///< triangles that did not do so in the input cut each other, however short the step
-    worn_away           ///< nothing is left that curvature could move
+    self_intersection,  ///< triangles that did not do so in the input cut each other, however short the step and whatever is held
+    worn_away           ///< nothing is left that curvature could move and that is not held
 };
 
 /// Totals since the start. Equal runs give equal reports.
@@ -43,6 +44,7 @@ struct curvature_report {
     std::uint64_t iterations = 0;
     std::uint64_t edges_collapsed = 0;
     std::uint64_t retries = 0;       ///< steps that were taken back because triangles cut each other
+    std::uint64_t held = 0;          ///< vertices now that are held still because triangles cut each other there
     double step = 0;                 ///< share of a mean edge that a vertex moves at most, now
     double removed_volume = 0;       ///< cubed length unit; of an open mesh right where its border stays
     curvature_stop stopped = curvature_stop::finished;  ///< of the last `run`
@@ -55,6 +57,11 @@ struct curvature_report {
 /// state depends on mesh, policies and options only, never on threads; n then m iterations equal n + m (where triangles
 /// are searched for cuts: unless the search at the end of n finds some that n + m would have lost again). When
 /// anything throws, the state is that after the last complete iteration.
+///
+/// A search that finds cuts takes the surface back to that of the last sound search and halves the step; after
+/// `hold_after` halvings it holds the vertices there still instead, for good or until the options are replaced. They
+/// neither move nor are collapsed, and |H| is scaled by the largest of the others. From then on the step doubles after
+/// every sound search on schedule, up to the given one.
 template <class Process = curvature_weathering<>>
 class curvature_run {
 public:
@@ -128,18 +135,23 @@ public:
         process.validate();
         process_ = std::move(process);
     }
+    /// Nothing is held any more.
     void replace(curvature_options const& options) {
         options.validate();
+        detail::curvature_state s = options.check_every > 0 ? snapshot() : detail::curvature_state{};
+        s.held.clear();
+        safe_ = std::move(s);
+        held_.clear();
+        holds_ = 0;
+        report_.held = 0;
         report_.step = 1 / options.step_divisor;
         options_ = options;
-        if (options_.check_every > 0) safe_ = snapshot();
     }
 
     // Checkpoints.
-
     /// The state as bytes, the same on every machine. O(vertices + faces).
     [[nodiscard]] std::vector<std::byte> checkpoint() const {
-        return detail::write_checkpoint({.now = snapshot(), .safe = safe_, .retries = report_.retries, .step = report_.step},
+        return detail::write_checkpoint({.now = snapshot(), .safe = safe_, .retries = report_.retries, .holds = holds_, .step = report_.step},
                                         input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same policies and options: the same bits as without
@@ -150,19 +162,22 @@ public:
         restore(std::move(c.now));
         safe_ = std::move(c.safe);
         report_.retries = c.retries;
+        holds_ = c.holds;
         report_.step = c.step;
         report_.removed_volume = scale_.volume_to_user(start_volume_ - volume());
     }
 
 private:
     [[nodiscard]] detail::curvature_state snapshot() const {
-        return {surface_, new_vertex_, wear_, input_of_, report_.iterations, report_.edges_collapsed};
+        return {surface_, new_vertex_, wear_, input_of_, held_, report_.iterations, report_.edges_collapsed};
     }
     void restore(detail::curvature_state s) noexcept {
         surface_ = std::move(s.surface);
         new_vertex_ = std::move(s.new_vertex);
         wear_ = std::move(s.wear);
         input_of_ = std::move(s.input_of);
+        held_ = std::move(s.held);
+        report_.held = static_cast<std::uint64_t>(std::count(held_.begin(), held_.end(), 1));
         report_.iterations = s.iterations;
         report_.edges_collapsed = s.edges_collapsed;
         fresh_ = false;
@@ -186,18 +201,22 @@ private:
         bool going = told();
         if (!going) report_.stopped = curvature_stop::observer;
         while (going && report_.iterations < end) {
-            bool const moved = iterate(threads);
+            bool const moved = search_due() || iterate(threads);  // due already: what was thrown broke the search off
             if (!moved) report_.stopped = curvature_stop::worn_away;
-            bool const scheduled = moved && options_.check_every > 0 && report_.iterations % options_.check_every == 0;
+            bool const scheduled = moved && search_due();
             bool const last = !moved || report_.iterations == end;
-            if ((scheduled || (last && options_.check_every > 0 && report_.iterations > safe_.iterations)) && cut()) {
+            std::vector<detail::triangle_pair> cuts;
+            if (scheduled || (last && options_.check_every > 0 && report_.iterations > safe_.iterations)) cuts = new_cuts();
+            if (!cuts.empty()) {
                 report_.stopped = curvature_stop::finished;
-                if (!step_back()) {
+                if (!step_back(std::move(cuts))) {
                     report_.stopped = curvature_stop::self_intersection;
                     break;
                 }
             } else if (scheduled) {
                 safe_ = snapshot();
+                holds_ = 0;
+                if (!held_.empty()) report_.step = std::min(2 * report_.step, 1 / options_.step_divisor);
             } else if (!moved) {
                 break;
             }
@@ -206,6 +225,10 @@ private:
                 break;
             }
         }
+    }
+
+    [[nodiscard]] bool search_due() const noexcept {
+        return options_.check_every > 0 && report_.iterations % options_.check_every == 0 && report_.iterations > safe_.iterations;
     }
 
     void refresh() {
@@ -223,13 +246,10 @@ private:
         next_.resize(n);
         moved_.resize(n);
         process_.estimator(view(), std::span<double>(h_), threads);
-        double largest = 0;
-        for (double const h : h_) largest = std::max(largest, std::fabs(h));
+        double const largest = detail::largest_curvature(h_, held_);
         double const shrink = largest > 1 ? 1 / largest : 1.0;
         double const most = largest > 1 ? 1.0 : largest;
-        if constexpr (std::is_same_v<decltype(process_.direction), laplacian_direction>) {
-            // the normal is not looked at
-        } else {
+        if constexpr (!std::is_same_v<decltype(process_.direction), laplacian_direction>) {  // which looks at no normal
             normal_.resize(n);
             vertex_normals(view(), normal_, threads);
         }
@@ -242,7 +262,7 @@ private:
                 vec3 const p = surface_.positions[v];
                 next_[v] = p;
                 moved_[v] = 0;
-                if (!(h_[v] > 0)) continue;
+                if (!(h_[v] > 0) || (!held_.empty() && held_[v] != 0)) continue;
                 double const h = std::min(h_[v] * shrink, 1.0);
                 std::span<std::uint32_t const> around = rings_.neighbors(v);
                 if (rings_.is_border(v)) around = detail::neighbors_along_border(rings_, surface_.triangles, v, along);
@@ -287,20 +307,22 @@ private:
     /// Finishes an iteration without the edges that have become too short; false where none can go. All or nothing.
     [[nodiscard]] bool thin_out(detail::edge_lengths const& edges) {
         double const limit = options_.small_edge * edges.mean;
-        if (!detail::any_may_collapse(edges, limit, next_, surface_.triangles, rings_)) return false;
+        if (!detail::any_may_collapse(edges, limit, next_, surface_.triangles, rings_, held_)) return false;
         detail::curvature_state s = snapshot();
         s.surface.positions = next_;
-        collapse_report const gone = detail::collapse_short_edges_fn::trusted(s.surface, limit, &rings_);
+        collapse_report const gone = detail::collapse_short_edges_fn::trusted(s.surface, limit, &rings_, held_);
         if (gone.collapsed == 0) return false;
         std::size_t const n = s.surface.positions.size();
         s.wear.assign(n, 0.0);
         s.input_of.assign(n, vertex_index{});
+        if (!held_.empty()) s.held.assign(n, 0);
         std::vector<unsigned char> merged(n, 0);
         for (std::size_t v = 0; v < wear_.size(); ++v) {
             std::size_t const to = gone.new_vertex[v].value;
             s.wear[to] = std::max(s.wear[to], wear_[v] + moved_[v]);
             s.input_of[to] = merged[to] == 0 && !(moved_[v] > 0) ? input_of_[v] : vertex_index{};
             merged[to] = 1;
+            if (!held_.empty() && held_[v] != 0) s.held[to] = 1;
         }
         for (vertex_index& v : s.new_vertex) v = gone.new_vertex[v.value];
         s.edges_collapsed += gone.collapsed;
@@ -309,23 +331,35 @@ private:
         return true;
     }
 
-    /// Whether triangles cut each other that did not do so in the input.
-    [[nodiscard]] bool cut() {
-        std::size_t const cuts = self_intersections(surface_.positions, surface_.triangles).size();
-        if (cuts == 0) return false;
+    /// Pairs of triangles that cut each other; none where they are not more than in the input.
+    [[nodiscard]] std::vector<detail::triangle_pair> new_cuts() {
+        std::vector<detail::triangle_pair> cuts = self_intersections(surface_.positions, surface_.triangles);
+        if (cuts.empty()) return cuts;
         if (!cuts_at_start_) {
             std::vector<vec3> start = input_;
             scale_.enter(start);
             cuts_at_start_ = self_intersections(start, input_triangles_).size();
         }
-        return cuts > *cuts_at_start_;
+        if (cuts.size() <= *cuts_at_start_) cuts.clear();
+        return cuts;
     }
-    /// Back to the last surface that was found sound, with half the step; false after too many times.
-    [[nodiscard]] bool step_back() {
-        restore(safe_);
-        report_.step /= 2;
+    /// Back to the last surface that was found sound, with half the step or with more held; false after too many times.
+    [[nodiscard]] bool step_back(std::vector<detail::triangle_pair> cuts) {
+        auto const below = [&](std::uint32_t halvings) {
+            return report_.step * options_.step_divisor < std::ldexp(1.0, -static_cast<int>(halvings)) * 1.5;
+        };
+        bool const holding = options_.hold_after < options_.retries && below(options_.hold_after);
+        bool const spent = holding ? holds_ >= options_.retries - options_.hold_after : below(options_.retries);
+        detail::curvature_state s = safe_;
+        if (holding && !spent) {
+            s.held = detail::held_around(std::move(cuts), holds_ + 1, surface_, new_vertex_, s, *cuts_at_start_ > 0);
+            std::vector<unsigned char>(s.held).swap(safe_.held);
+        }
+        restore(std::move(s));
         ++report_.retries;
-        return report_.step * options_.step_divisor > std::ldexp(1.0, -static_cast<int>(options_.retries) - 1) * 1.5;
+        if (holding && !spent) ++holds_;
+        if (!holding) report_.step /= 2;
+        return !spent;
     }
 
     /// The sum over the closed chain about the origin of the door's frame. O(faces).
@@ -351,6 +385,8 @@ private:
     std::vector<double> wear_{};
     std::vector<vertex_index> new_vertex_{};
     std::vector<vertex_index> input_of_{};    ///< vertex now -> that of the input it still is, or not valid
+    std::vector<unsigned char> held_{};       ///< vertex now -> whether it is held still; empty: none is
+    std::uint64_t holds_ = 0;                 ///< since the last sound search
     curvature_report report_{};
     double mean_edge_ = -1;  ///< of the surface now; below 0: not measured
     double start_volume_ = 0;

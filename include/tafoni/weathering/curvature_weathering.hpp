@@ -93,7 +93,12 @@ struct curvature_options {
     mesh_topology topology = mesh_topology::adapt;
     /// Iterations between searches for triangles that cut each other, and once more at the end of every run; 0 = never.
     std::uint32_t check_every = 0;
-    std::uint32_t retries = 6;      ///< how often the step may be halved where the search finds some
+    /// How often a surface may be taken back to the last sound one where the search finds some, with half the step or
+    /// with more held still.
+    std::uint32_t retries = 6;
+    /// Halvings of the step after which the vertices of the triangles that still cut each other are held still, with those
+    /// within an edge of them (two edges the second time in a row, ...), and the step grows back. `retries` or more: never.
+    std::uint32_t hold_after = 2;
 
     /// \throws invalid_input  `bad_parameter`.
     void validate() const {

@@ -62,9 +62,10 @@ template <executor Executor>
     return all;
 }
 
-/// Whether an edge below `limit` may be collapsed. O(vertices of the blocks that hold such edges).
+/// Whether an edge below `limit` may be collapsed, none at a vertex that `fixed`, if not empty, flags. O(vertices of the blocks that hold such edges).
 [[nodiscard]] inline bool any_may_collapse(edge_lengths const& edges, double limit, std::span<vec3 const> positions,
-                                           std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings) {
+                                           std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings,
+                                           std::span<unsigned char const> fixed = {}) {
     collapse_rules rules(positions, triangles, rings);
     std::vector<short_edge> found;
     for (std::size_t b = 0; b < edges.shortest_of_block.size(); ++b) {
@@ -73,6 +74,7 @@ template <executor Executor>
         find_short_edges(positions, rings, limit * limit, b * vertex_grain,
                          std::min((b + 1) * vertex_grain, positions.size()), found);
         for (short_edge const& e : found) {
+            if (!fixed.empty() && (fixed[e.ends[0]] | fixed[e.ends[1]]) != 0) continue;
             if (rules.target(e.ends[0], e.ends[1])) return true;
         }
     }
