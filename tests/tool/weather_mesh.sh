@@ -29,6 +29,7 @@ bad curvature layers "values: one is out of range" --durability layers:values=1,
 bad curvature field_key "unknown key 'colour'" --durability noise:colour=3
 bad curvature small_edge small-edge --small-edge 0.9
 bad curvature retries retries --retries 99
+bad curvature hold_after hold-after --hold-after 99
 bad curvature up up --up w
 bad curvature format format --format xyz
 bad hydraulic model model --model fire
@@ -62,6 +63,7 @@ bad wrinkles divisor divisor --path 0,1 --divisor 0
 bad wrinkles strength strength --path 0,1 --strength nan
 bad wrinkles subdivisions subdivisions --path 0,1 --subdivisions 7
 for process in curvature hydraulic wrinkles; do expect 0 help_$process "$weather" $process --help; done
+for process in curvature wrinkles; do says help_$process "INPUT and all options must be given again"; done
 
 # bad input: 1, and nothing is made
 for process in curvature hydraulic; do
@@ -105,7 +107,7 @@ rock=builtin:bust:resolution=26
         [ -s "first/$file" ] || complain "first/$file is missing or empty"
     done
     for key in schema version process seed parameters threads stopped repaired mesh bounds iterations vertices faces edges_collapsed \
-        volume_removed largest_wear seconds read weather write; do
+        retries held step volume_removed largest_wear seconds read weather write; do
         grep -q "\"$key\":" first/report.json || complain "report.json has no $key"
     done
     for channel in curvature wear; do grep -q "Name=\"$channel\"" first/weathered.vtp || complain "weathered.vtp has no $channel"; done
@@ -131,8 +133,10 @@ rock=builtin:bust:resolution=26
     expect 1 other_input "$weather" curvature builtin:cube -o none $part --iterations 40 --resume half.bin
     expect 2 too_few "$weather" curvature $rock -o none $part --iterations 3 --resume half.bin
     says too_few "--iterations 3"
+    says other_options "half.bin: "
     head -c 100 half.bin > cut.bin
     expect 1 truncated "$weather" curvature $rock -o none $part --iterations 40 --resume cut.bin
+    says truncated "cut.bin: "
     [ ! -e none ] || complain "a refused resume made its folder"
 }
 for option in "--estimator cotangent" "--estimator quadric" "--estimator bubble --ball 0.1" "--direction normal" "--direction blend" \
@@ -143,6 +147,22 @@ for option in "--estimator cotangent" "--estimator quadric" "--estimator bubble 
 done
 expect 0 cube "$weather" curvature builtin:cube:squares=8 -o cube --iterations 60 --progress none
 holds "$(number cube volume_removed) > 0.2" cube
+# where triangles would cut each other: without and with vertices that are held still, across a break too
+thin="builtin:outcrop:resolution=32 --step 2 --check-every 5 --progress none --format obj --iterations"
+# shellcheck disable=SC2086
+{
+    expect 0 plain_thin "$weather" curvature $thin 60 -o plain_thin --retries 2
+    grep -q '"stopped": "self_intersection"' plain_thin/report.json || complain "a surface that cuts itself is not told in the report"
+    says plain_thin "ended early, after [0-9]* of 60 iterations: triangles would cut"
+    says plain_thin "--estimator quadric"
+    expect 0 thin "$weather" curvature $thin 60 -o thin --checkpoint thin.bin
+    grep -q '"stopped": "finished"' thin/report.json || complain "one cut ends the run"
+    holds "$(number thin held) > 0" thin
+    says thin "were held still"
+    expect 0 half_thin "$weather" curvature $thin 40 -o gone_thin --checkpoint half_thin.bin
+    expect 0 rest_thin "$weather" curvature $thin 60 -o gone_thin --resume half_thin.bin --checkpoint gone_thin.bin
+    cmp thin.bin gone_thin.bin || complain "a run that holds vertices and is resumed ends differently"
+}
 expect 0 none_at_all "$weather" curvature builtin:cube:squares=8 -o unchanged --iterations 0 --format obj --progress none
 holds "$(number unchanged volume_removed) == 0" unchanged
 
@@ -269,6 +289,7 @@ expect 0 crack1 "$weather" wrinkles $cube -o crack1 --through 0.2,0.2,1,0.5,0.6,
 same crack crack1
 holds "$(number crack volume_after) < $(number crack volume_before)" crack
 expect 0 swell "$weather" wrinkles $cube -o swell --enlarge 100,0.3,2 --enlarge 30,0.2,-1 --progress none
+says swell "0 wrinkles, 2 enlargements"
 expect 0 worn "$weather" wrinkles $cube -o worn --path 0,70 --radius 0.2 --wear-on builtin:sphere:squares=12 --progress none
 [ -s worn/worn_0.obj ] || complain "no other mesh wears the wrinkles"
 expect 1 other_shape "$weather" wrinkles $cube -o none --path 0,70 --wear-on builtin:cube:squares=11
