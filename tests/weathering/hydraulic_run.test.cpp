@@ -323,3 +323,20 @@ TEST_CASE("a fluid whose reach grows is asked about as far") {
     CHECK(run.run(1).contacts == 0);
     CHECK(run.run(1).contacts == 1);
 }
+
+TEST_CASE("a fluid that does not advance is refused where there is no surface too") {
+    struct stuck {
+        std::size_t particle_count() const { return 0; }
+        vec3 position(std::size_t) const { return vec3{0, 0, 0}; }
+        vec3 velocity(std::size_t) const { return vec3{0, 0, 0}; }
+        double reach() const { return 1; }
+        double step(open_space const&, inline_executor const&) { return std::numeric_limits<double>::quiet_NaN(); }
+        double step(mesh_boundary const&, inline_executor const&) { return 0; }
+    };
+    hydraulic_run empty(triangle_surface{}, stuck{}, partheniades_erosion{});
+    CHECK_THROWS_AS(empty.run(1), invalid_input);
+    CHECK(empty.report().iterations == 0);
+    CHECK(empty.report().time == 0);
+    hydraulic_run run(slope(2, 0), stuck{}, partheniades_erosion{});
+    CHECK_THROWS_WITH(run.run(1), Catch::Contains("advanced by 0 s"));
+}

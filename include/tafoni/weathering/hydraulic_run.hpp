@@ -155,16 +155,12 @@ private:
             fresh_ = true;
         }
         if (surface_.triangles.empty()) {
-            report_.time += fluid_.step(open_space{}, threads);
+            report_.time += advanced(fluid_.step(open_space{}, threads));
             ++report_.iterations;
             return;
         }
         stand_walls();
-        double const dt = ahead_ > 0 ? ahead_ : fluid_.step(walls_[0], threads);
-        if (!(dt > 0 && std::isfinite(dt))) {
-            detail::fail<invalid_input>(errc::bad_parameter, "hydraulic_run: the fluid advanced by " + detail::number_text(dt) + " s",
-                                        {.kind = entity::parameter, .value = dt});
-        }
+        double const dt = ahead_ > 0 ? ahead_ : advanced(fluid_.step(walls_[0], threads));
         // What the user wrote may throw up to here and no further; the next run then goes on behind the fluid's step.
         ahead_ = dt;
         if (walls_[0].reach() != fluid_.reach()) stand_walls();
@@ -194,6 +190,11 @@ private:
         ahead_ = 0;
     }
 
+    [[nodiscard]] static double advanced(double dt) {
+        if (dt > 0 && std::isfinite(dt)) return dt;
+        detail::fail<invalid_input>(errc::bad_parameter, "hydraulic_run: the fluid advanced by " + detail::number_text(dt) + " s",
+                                    {.kind = entity::parameter, .value = dt});
+    }
     /// Where the surface is, and to the fluid's reach.
     void stand_walls() {
         if (!walls_.empty() && walls_[0].reach() == fluid_.reach()) return walls_[0].refit(surface_.positions, surface_.triangles);
