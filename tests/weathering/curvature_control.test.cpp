@@ -343,7 +343,29 @@ TEST_CASE("what cut from the start is not held, what cuts later beside it is") {
     CHECK(r.held > 0);
     triangle_surface const end = run.surface();
     CHECK(self_intersections(end.positions, end.triangles).size() == 1);
-    for (std::size_t v = first; v < s.positions.size(); ++v) CHECK(end.positions[v] != s.positions[v]);  // sank
+    run.run(8);
+    for (std::size_t v = first; v < s.positions.size(); ++v) CHECK(run.surface().positions[v] != end.positions[v]);  // sinks
+}
+
+TEST_CASE("edges at fixed vertices are not collapsed, others are") {
+    triangle_surface const ball = triangles_of(icosphere(2));
+    std::vector<unsigned char> fixed(ball.positions.size(), 0);
+    for (std::size_t v = 0; v < fixed.size(); ++v) fixed[v] = ball.positions[v][2] > 0 ? 1 : 0;
+    triangle_surface s = ball;
+    collapse_report const r = detail::collapse_short_edges_fn::trusted(s, 0.4, nullptr, fixed);
+    CHECK(r.collapsed > 10);
+    std::vector<int> parts(s.positions.size(), 0);
+    for (vertex_index const v : r.new_vertex) ++parts[v.value];
+    for (std::size_t v = 0; v < fixed.size(); ++v) {
+        if (fixed[v] == 0) continue;
+        CHECK(s.positions[r.new_vertex[v].value] == ball.positions[v]);
+        CHECK(parts[r.new_vertex[v].value] == 1);
+    }
+    vertex_rings const rings(ball.positions.size(), ball.triangles);
+    auto const edges = detail::measure_edges(ball.positions, rings, inline_executor{});
+    CHECK(detail::any_may_collapse(edges, 0.4, ball.positions, ball.triangles, rings, fixed));
+    fixed.assign(fixed.size(), 1);
+    CHECK_FALSE(detail::any_may_collapse(edges, 0.4, ball.positions, ball.triangles, rings, fixed));
 }
 
 TEST_CASE("searches between the ends of runs do not depend on where runs end") {
