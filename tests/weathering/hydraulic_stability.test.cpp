@@ -350,3 +350,28 @@ TEST_CASE("the gap between two triangles is that of their nearest points") {
         CHECK(gap == Approx(std::sqrt(detail::squared_gap(b, a))).margin(1e-9));
     }
 }
+
+TEST_CASE("a tip whose triangle is flat slides off it and goes on") {
+    // A hexagon with its middle above one side, where the triangle over that side is a sliver before the tip is down.
+    std::vector<vec3> p;
+    for (auto const& [x, y] : {std::array{1.0, 0.0}, {0.5, 0.866}, {-0.5, 0.866}, {-1.0, 0.0}, {-0.5, -0.866}, {0.5, -0.866}}) {
+        p.push_back(vec3{x, y, 0});
+    }
+    p.push_back(vec3{0, 0.81, 0.3});
+    std::vector<std::array<std::uint32_t, 3>> t;
+    for (std::uint32_t k = 0; k < 6; ++k) t.push_back({k, (k + 1) % 6, 6});
+    vertex_rings const rings(p.size(), t);
+    detail::sound_moves moves;
+    detail::moving_surface const s{p, t, rings};
+    moves.adopt(s);
+    std::vector<vec3> next;
+    for (int k = 0; k < 200; ++k) {
+        next = p;
+        next[6][2] = std::max(next[6][2] - 0.01, 0.0);
+        detail::follow(s, next, moves, 0.01);
+        REQUIRE(next == p);
+    }
+    CHECK(p[6][2] < 0.005);
+    CHECK(p[6][1] < 0.79);
+    for (std::uint32_t k = 0; k < 6; ++k) CHECK(p[k][2] == 0);
+}

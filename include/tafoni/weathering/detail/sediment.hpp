@@ -198,25 +198,40 @@ private:
     std::vector<std::pair<std::uint32_t, std::int64_t>> passed_{};
 };
 
+/// From v to the mean of its neighbours, without what leads into the solid or out of it. O(neighbours).
+[[nodiscard]] inline vec3 slide(std::size_t v, vertex_room const& room, moving_surface const& s) noexcept {
+    vec3 mean{0, 0, 0};
+    for (std::uint32_t const w : s.rings.neighbors(v)) mean += s.positions[w] - s.positions[v];
+    mean /= static_cast<double>(s.rings.neighbors(v).size());
+    double const across = dot(mean, room.sum) / (room.area * room.area);
+    return vec3{mean[0] - across * room.sum[0], mean[1] - across * room.sum[1], mean[2] - across * room.sum[2]};
+}
+
 /// Moves vertices to `next` as far as that is sound: the whole way, half of it, a quarter, or none, and no farther than
-/// their `vertex_room`. `next` is where they are then. O(vertices + faces at those that move).
+/// their `vertex_room`. One that may not go at all, as the tip of a triangle that is flat already, slides along the
+/// surface towards the middle of its neighbours, so that it may go on later. `next` is where they are then.
+/// O(vertices + faces at those that move).
 inline void follow(moving_surface const& s, std::span<vec3> next, sound_moves& moves, double most) {
     for (std::size_t v = 0; v < next.size(); ++v) {
         vec3 const p = s.positions[v];
         if (next[v] == p) continue;
-        vec3 const step{next[v] - p};
         vertex_room const room = moves.room(v, s);
-        double const far = length(step);
         double const way = room.way(most);
-        double share = far > way ? way / far : 1.0;
+        auto const goes = [&](vec3 const& step) {
+            double const far = length(step);
+            double share = far > way ? way / far : 1.0;
+            for (int halved = 0; far > 0 && share > 0 && halved < 3; ++halved, share *= 0.5) {
+                vec3 const to{p[0] + share * step[0], p[1] + share * step[1], p[2] + share * step[2]};
+                if (!moves.allows(v, to, room, s)) continue;
+                s.positions[v] = next[v] = to;
+                moves.went(v, share * far, s);
+                return true;
+            }
+            return false;
+        };
+        vec3 const step{next[v] - p};
         next[v] = p;
-        for (int halved = 0; share > 0 && halved < 3; ++halved, share *= 0.5) {
-            vec3 const to{p[0] + share * step[0], p[1] + share * step[1], p[2] + share * step[2]};
-            if (!moves.allows(v, to, room, s)) continue;
-            s.positions[v] = next[v] = to;
-            moves.went(v, share * far, s);
-            break;
-        }
+        if (!goes(step) && way > 0 && !s.rings.is_border(v)) static_cast<void>(goes(slide(v, room, s)));
     }
 }
 
