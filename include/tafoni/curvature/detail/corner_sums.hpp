@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
@@ -36,6 +37,45 @@ inline void require_one_per_vertex(char const* who, surface_view const& s, std::
                             {.kind = entity::parameter});
     }
 }
+
+/// Room for numbers, not initialised, that the calling thread keeps for its next call: fresh pages cost several threads
+/// more than the sums that they hold. A call from within the use of one gets room of its own.
+template <class T>
+class kept_array {
+public:
+    explicit kept_array(std::size_t size) : mine_(std::move(kept())) {
+        if (mine_.size < size) {
+            mine_.data.reset();
+            mine_.size = 0;
+            mine_.data = std::make_unique_for_overwrite<T[]>(size);
+            mine_.size = size;
+        }
+    }
+    kept_array(kept_array const&) = delete;
+    kept_array& operator=(kept_array const&) = delete;
+    ~kept_array() { kept() = std::move(mine_); }
+
+    [[nodiscard]] T& operator[](std::size_t i) const noexcept { return mine_.data[i]; }
+
+private:
+    struct room {
+        std::unique_ptr<T[]> data{};
+        std::size_t size = 0;
+
+        room() = default;
+        room(room&& other) noexcept : data(std::move(other.data)), size(std::exchange(other.size, 0)) {}
+        room& operator=(room&& other) noexcept {
+            data = std::move(other.data);
+            size = std::exchange(other.size, 0);
+            return *this;
+        }
+    };
+    static room& kept() {
+        static thread_local room one;
+        return one;
+    }
+    room mine_;
+};
 
 /// `finish(v, sum)` for every vertex, with the sum over the corners at v, by ascending face, of what a face gives.
 ///
@@ -61,8 +101,7 @@ void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, So
         for (std::size_t v = 0; v < vertices; ++v) finish(v, sums[v]);
         return;
     }
-    // Not initialised: the threads that write the parts first also have their pages made.
-    auto const parts = std::make_unique_for_overwrite<decltype(source.of(faces).part(faces))[]>(faces);
+    kept_array<decltype(source.of(faces).part(faces))> const parts(faces);
     executor.for_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
         std::size_t f = begin;
         for (; f + 1 < end; f += 2) {
