@@ -81,7 +81,7 @@ public:
     [[nodiscard]] hydraulic_report const& report() const noexcept { return report_; }
     /// Way that each vertex has moved, length unit.
     [[nodiscard]] std::span<double const> wear() const noexcept { return wear_; }
-    /// Particles that touched a face at the vertex, summed over iterations.
+    /// Contacts of particles with the faces at the vertex, summed over iterations.
     [[nodiscard]] std::span<std::uint64_t const> flow() const noexcept { return flow_; }
     /// Volume laid down less volume taken, cubed length unit. O(vertices).
     [[nodiscard]] std::vector<double> sediment() const {
