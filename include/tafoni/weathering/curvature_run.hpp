@@ -50,7 +50,7 @@ struct curvature_report {
     curvature_stop stopped = curvature_stop::finished;  ///< of the last `run`
 };
 
-/// A surface that weathers [Skala's thesis, section 9.3]. Owns a copy of the mesh.
+/// A surface that weathers [Skorkovská's thesis, section 9.3]. Owns a copy of the mesh.
 ///
 /// Coordinates are shifted and scaled by a power of two to about unit size at the door, so the result does not
 /// depend on the model's unit: the curvature of section 9.1 is scaled into [-1, 1] whenever it lies outside. The

@@ -48,7 +48,7 @@ using curvature_members = bundle_members<bundle_member<estimator_role, tensor_fi
                                          bundle_member<durability_role, constant_field>>;
 }  // namespace detail
 
-/// Salt, frost and wind that wear what sticks out [Skala's thesis, section 9.3].
+/// Salt, frost and wind that wear what sticks out [Skorkovská's thesis, section 9.3].
 ///
 /// Every iteration moves the vertices of positive mean curvature by H^n e / (x durability) along `direction`, H
 /// scaled into [-1, 1] and e the mean edge. Durability is asked at the vertex; what is below `least_durability`

@@ -35,7 +35,7 @@ concept exchange_rule = std::copy_constructible<R> && requires(R const& r, wash_
 };
 
 /// Erosion rate k (tau - tau_c)^a with the shear stress tau = K theta^m and the shear rate theta = v / d
-/// [Partheniades 1965; Wojtan et al. 2007; Skala's thesis, equations 8.2 to 8.4].
+/// [Partheniades 1965; Wojtan et al. 2007; Skorkovská's thesis, equations 8.2 to 8.4].
 ///
 /// v is the velocity along the surface. d is the distance from the face, no less than a tenth of the particle's
 /// reach, since particles are drawn as points but reach the face. Below tau_c the power keeps its sign, so the
@@ -81,7 +81,7 @@ private:
 static_assert(exchange_rule<partheniades_erosion>);
 
 /// Erosion of every vertex near the water by its curvature, scaled into [0, 1], so that ridges go fastest and hollows
-/// slowest [Skala's thesis, section 9.4].
+/// slowest [Skorkovská's thesis, section 9.4].
 template <curvature_estimator Estimator = tensor_fit>
 struct curvature_erosion {
     [[no_unique_address]] Estimator estimator{};

@@ -26,7 +26,7 @@
 
 namespace tafoni {
 
-/// A surface under water [Skala's thesis, chapters 8 and 9]. Owns a copy of the mesh, and the fluid.
+/// A surface under water [Skorkovská's thesis, chapters 8 and 9]. Owns a copy of the mesh, and the fluid.
 ///
 /// An iteration lets the fluid take a step along the surface, then wears the surface by the particles that touch
 /// it. With an exchange rule each particle takes rate x contact area x time from the corners of its face or

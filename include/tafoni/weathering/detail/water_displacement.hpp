@@ -21,7 +21,7 @@
 
 namespace tafoni::detail {
 
-/// Equations 9.4 to 9.7 of Skala's thesis; keeps its memory from use to use.
+/// Equations 9.4 to 9.7 of Skorkovská's thesis; keeps its memory from use to use.
 class water_displacement {
 public:
     /// Puts into `next` where the vertices go that are within the influence of one of `water`; `mean_edge` and `most` in
