@@ -1,4 +1,4 @@
-# Running water: a stream that cuts a gorge (Figure 9.10 of the source), rain over a bust (Figure 9.9) and a slope. Sourced by examples/run.sh.
+# Running water: a stream that cuts a gorge (Figure 9.10 of the source), rain that flutes a bust (Figure 9.9) and rain on a slope. Sourced by examples/run.sh.
 # shellcheck shell=sh disable=SC2154
 . "$root/examples/pictures/meshes.sh"
 
@@ -68,8 +68,8 @@ case $input in
         esac
         ;;
 esac
-pour bust $((900 / part)) "$look" "$upwards" 60 120 "a bust" "under rain" "$model" --up "$up" --particles $((6000 / coarse)) \
-    --durability 0.2 --step 40 --friction 6
+pour bust $((900 / part)) "$look" "$upwards" 60 1500 "a bust" "under rain" "$model" --up "$up" --particles $((6000 / coarse)) \
+    --model curvature --durability 0.9 --step 40 --friction 6
 facing=+Z
 # shellcheck disable=SC2086
 pour terrain $((500 / part)) "0.8 -1 0.9" "0 0 1" 50 $((900 / part)) "a slope" "under rain" "$terrain" $over --particles $((8000 / coarse)) \
