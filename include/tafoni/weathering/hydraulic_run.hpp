@@ -9,6 +9,7 @@
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/geometry/refine_faces.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
+#include <tafoni/weathering/detail/held_borders.hpp>
 #include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
 #include <tafoni/weathering/detail/water_contacts.hpp>
@@ -125,7 +126,7 @@ public:
 
 private:
     [[nodiscard]] detail::moving_surface moving() noexcept {
-        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_, .clear = clear_};
+        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_, .clear = clear_, .kept = border_.kept()};
     }
     /// The largest volume that a vertex moves by in an iteration. O(vertices + faces).
     [[nodiscard]] double largest_move() const {
@@ -151,6 +152,7 @@ private:
         if (!fresh_) {
             rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
             moves_.adopt(moving());
+            border_.adopt(rings_, surface_.triangles, surface_.positions.size());
             clearance_.forget();
             fresh_ = true;
         }
@@ -159,6 +161,7 @@ private:
             ++report_.iterations;
             return;
         }
+        border_.look(surface_.positions, surface_.triangles, rings_);
         stand_walls();
         double const dt = ahead_ > 0 ? ahead_ : advanced(fluid_.step(walls_[0], threads));
         // What the user wrote may throw up to here and no further; the next run then goes on behind the fluid's step.
@@ -172,7 +175,7 @@ private:
         contacts_.find(process_, fluid_, walls_[0], loads_now_, unit_, dt, threads);
         if constexpr (!exchange_rule<Process>) {
             displacement_.find(process_, {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_},
-                               contacts_.points(), mean_edge_, most, next_, threads);
+                               border_.kept(), contacts_.points(), mean_edge_, most, next_, threads);
         }
         if (options_.check_every > 0) look_around(most, threads);
         // Of what follows only memory may run out; the iteration is taken back then.
@@ -293,20 +296,26 @@ private:
         report_.contacts += contacts_.count();
     }
 
-    /// The volume between the surface before and `next_`, face by face; water carries it all away.
+    /// The volume that each face swept; water carries it all away. The sides of two faces at their edge are the same,
+    /// so the sum is the volume between the surface before and `next_`, also where the surface is open.
     void book_difference() {
-        vec3 const o = kept_.positions.front();
+        auto const& was = kept_.positions;
         for (auto const& t : surface_.triangles) {
             bool same = true;
-            for (std::uint32_t const c : t) same = same && next_[c] == kept_.positions[c];
+            for (std::uint32_t const c : t) same = same && next_[c] == was[c];
             if (same) continue;
-            auto const six = [&](std::vector<vec3> const& p) {
-                return dot(p[t[0]] - o, cross(p[t[1]] - o, p[t[2]] - o));
-            };
-            std::int64_t const taken = unit_.fixed((six(kept_.positions) - six(next_)) / 6);
+            // Simpson's rule is exact: the area vector is quadratic in time.
+            vec3 const b0{was[t[1]] - was[t[0]]};
+            vec3 const c0{was[t[2]] - was[t[0]]};
+            vec3 const b1{next_[t[1]] - next_[t[0]]};
+            vec3 const c1{next_[t[2]] - next_[t[0]]};
+            vec3 const areas = cross(b0, c0) + cross(vec3{b0 + b1}, vec3{c0 + c1}) + cross(b1, c1);
+            vec3 ways{0, 0, 0};
+            for (std::uint32_t const c : t) ways += was[c] - next_[c];
+            std::int64_t const taken = unit_.fixed(dot(ways, areas) / 36);
             books_.eroded += taken;
             books_.left += taken;
-            sediment_[t[0]] -= taken;
+            for (std::size_t k = 0; k < 3; ++k) sediment_[t[k]] -= detail::sediment_exchange::third(taken, k);
         }
     }
 
@@ -361,6 +370,7 @@ private:
     detail::water_displacement displacement_{};
     before kept_{};
     detail::wall_clearance clearance_{};
+    detail::held_borders border_{};
     std::vector<double> clear_{};         ///< way that vertices have to other walls, below 0 not known
     std::vector<std::uint32_t> movers_{};
     std::vector<unsigned char> wet_{};

@@ -6,6 +6,7 @@
 #include <tafoni/core/index.hpp>
 #include <tafoni/core/vector.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
+#include <tafoni/weathering/detail/held_borders.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,9 +21,10 @@ namespace tafoni::detail {
 
 /// The triangles around a vertex, as far as its move is concerned.
 struct vertex_room {
-    vec3 sum{0, 0, 0};   ///< of normals by twice the area: six times the volume per length along a is a . sum
+    vec3 sum{0, 0, 0};   ///< of normals by twice the area, where it may go: six times the volume per length along a is a . sum
     double area = 0;     ///< |sum|
-    double whole = 0;    ///< twice the area around; area / whole is the mean cosine between faces and normal
+    double sheer = 0;    ///< |sum| with the coordinates that a border vertex keeps
+    double whole = 0;    ///< twice the area around; sheer / whole is the mean cosine between faces and normal
     double lowest = 0;   ///< least altitude of a triangle over the side opposite the vertex, length unit
     double clear = std::numeric_limits<double>::infinity();  ///< way before other walls could be met, length unit
 
@@ -40,6 +42,7 @@ struct moving_surface {
     std::span<std::array<std::uint32_t, 3> const> triangles;
     vertex_rings const& rings;
     std::span<double> clear{};  ///< way that each vertex has left, below 0 none; empty: any
+    std::span<axis_bits const> kept{};  ///< coordinates that vertices keep; empty: none
 };
 
 /// Knows the triangles of a surface whose vertices move one after the other, and refuses what
@@ -88,7 +91,11 @@ public:
             if (height < 0.0025 * side) continue;  // a sliver follows its neighbours
             if (lowest < 0 || height < lowest) lowest = height;
         }
-        out.area = length(out.sum);
+        out.area = out.sheer = length(out.sum);
+        if (!s.kept.empty() && s.kept[v] != 0) {
+            out.sum = without(out.sum, s.kept[v]);
+            out.area = length(out.sum);
+        }
         if (!s.clear.empty()) out.clear = std::max(s.clear[v], 0.0);
         out.lowest = lowest > 0 ? std::sqrt(lowest) : 0.0;
         return out;
@@ -111,7 +118,7 @@ public:
             sum += then.twice * then.normal;
             whole += then.twice;
         }
-        if (length(sum) < steepest * whole && length(sum) * room.whole < room.area * whole * (1 - 1e-9)) return false;
+        if (length(sum) < steepest * whole && length(sum) * room.whole < room.sheer * whole * (1 - 1e-9)) return false;
         for (std::size_t k = 0; k < around.size(); ++k) {
             std::uint32_t const f = around[k].face;
             for (std::uint32_t const g : across_[f]) {

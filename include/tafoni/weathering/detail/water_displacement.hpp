@@ -9,11 +9,14 @@
 #include <tafoni/curvature/concepts.hpp>
 #include <tafoni/curvature/displacement.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
+#include <tafoni/weathering/detail/border_neighbors.hpp>
+#include <tafoni/weathering/detail/held_borders.hpp>
 #include <tafoni/weathering/detail/near_water.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -25,10 +28,10 @@ namespace tafoni::detail {
 class water_displacement {
 public:
     /// Puts into `next` where the vertices go that are within the influence of one of `water`; `mean_edge` and `most` in
-    /// length units. O(vertices + faces + water).
+    /// length units, `kept` the coordinates that border vertices keep or empty. O(vertices + faces + water).
     template <class Process, executor E>
-    void find(Process const& process, surface_view const& surface, std::span<vec3 const> water, double mean_edge, double most,
-              std::vector<vec3>& next, E const& threads) {
+    void find(Process const& process, surface_view const& surface, std::span<axis_bits const> kept, std::span<vec3 const> water,
+              double mean_edge, double most, std::vector<vec3>& next, E const& threads) {
         std::size_t const n = surface.positions.size();
         double const influence = process.influence > 0 ? process.influence : mean_edge;
         square_.resize(n);
@@ -48,12 +51,17 @@ public:
         double const largest = std::max(std::fabs(low), std::fabs(high));
         next.assign(surface.positions.begin(), surface.positions.end());
         threads.for_blocks(n, vertex_grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t> along;
             for (std::size_t v = begin; v < end; ++v) {
                 if (!(square_[v] <= influence * influence)) continue;
                 double const share = width > 0 ? (mean_[v] - low) * width : 0.5;
                 double const nearness = (influence - std::sqrt(square_[v])) / influence;
                 vec3 const p = surface.positions[v];
-                vec3 const way = direction(surface, v, largest > 0 ? mean_[v] / largest : 0.0);
+                double const curvature = largest > 0 ? mean_[v] / largest : 0.0;
+                vec3 way = surface.rings->is_border(v)
+                               ? direction(surface, detail::neighbors_along_border(*surface.rings, surface.triangles, v, along), v, curvature)
+                               : direction(surface, surface.rings->neighbors(v), v, curvature);
+                if (!kept.empty() && kept[v] != 0) way = kept_in(way, normal_[v], kept[v]);
                 double const strength = process.power == 1 ? share : share > 0 ? elementary::pow(share, process.power) : 0.0;
                 double const hard = std::max(process.durability(p), 1e-3);
                 double const d = std::min(strength / hard, 1.0) * most * nearness;
@@ -67,11 +75,11 @@ public:
     }
 
 private:
-    /// Equation 9.7 with the erratum: inward normal and unit Laplacian, without what would lead outwards.
-    [[nodiscard]] vec3 direction(surface_view const& surface, std::size_t v, double curvature) const {
+    /// Equation 9.7 with the erratum: inward normal and unit Laplacian, without what would lead outwards. `around`: at a
+    /// border the neighbours along it, else all, so that a border does not creep inwards.
+    [[nodiscard]] vec3 direction(surface_view const& surface, std::span<std::uint32_t const> around, std::size_t v, double curvature) const {
         vec3 const& p = surface.positions[v];
         vec3 laplacian{0, 0, 0};
-        auto const around = surface.rings->neighbors(v);
         for (std::uint32_t const w : around) laplacian += surface.positions[w] - p;
         if (!around.empty()) laplacian /= static_cast<double>(around.size());
         vec3 way = blended_direction{}.direction({.position = p, .laplacian = laplacian, .normal = normal_[v], .curvature = curvature});
@@ -80,6 +88,16 @@ private:
             for (int a = 0; a < 3; ++a) way[a] -= out * normal_[v][a];
         }
         return way;
+    }
+    /// As deep into the surface as `way`, without the coordinates that are kept; not at all where the surface runs along
+    /// the plane of the border.
+    [[nodiscard]] static vec3 kept_in(vec3 const& way, vec3 const& normal, axis_bits kept) noexcept {
+        vec3 const within = without(normal, kept);
+        vec3 const held = without(way, kept);
+        double const free = squared_length(within);
+        if (!(free > 0.0625)) return vec3{0, 0, 0};
+        double const more = std::clamp((tafoni::dot(way, normal) - tafoni::dot(held, normal)) / free, -4.0, 4.0);
+        return vec3{held[0] + more * within[0], held[1] + more * within[1], held[2] + more * within[2]};
     }
 
     near_water near_{};
