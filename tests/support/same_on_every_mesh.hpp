@@ -13,10 +13,12 @@
 #include <tafoni/testing/mesh_laws.hpp>
 #include <tafoni/weathering/curvature_run.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
+#include <tafoni/weathering/wrinkles.hpp>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,13 @@ template <tafoni::polygon_mesh M>
     };
     under_rain("hydraulic_run by stress", tafoni::partheniades_erosion{.coefficient = 1e-3, .critical = 0});
     under_rain("hydraulic_run by curvature", tafoni::curvature_erosion<>{});
+    auto const folded = [&](auto const& base) {
+        std::uint32_t const end = plain.triangles[plain.triangles.size() / 2][0];
+        tafoni::wrinkle const fold{.controls = {tafoni::vertex_index{plain.triangles[0][0]}, tafoni::vertex_index{end}}, .radius = 0.3};
+        return tafoni::wrinkle_pattern(base, std::span(&fold, 1)).wear(plain.positions, 2);
+    };
+    tafoni::triangle_surface const fold = folded(mesh);
+    if (!(fold == folded(plain)) || fold.positions.size() <= plain.positions.size()) out.push_back("wrinkle_pattern");
     return out;
 }
 
