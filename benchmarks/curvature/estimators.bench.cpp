@@ -34,7 +34,7 @@ struct model {
     vertex_rings rings{};
 
     explicit model(triangle_surface s) : mesh(std::move(s)), rings(mesh.positions.size(), mesh.triangles) {}
-    [[nodiscard]] surface_view view() const { return {mesh.positions, mesh.triangles, &rings}; }
+    [[nodiscard]] surface_view view() const { return {.positions = mesh.positions, .triangles = mesh.triangles, .rings = &rings}; }
 };
 
 model const& bust() {
@@ -54,9 +54,12 @@ template <class Estimator>
 void estimate(benchmark::State& state, model const& m, std::size_t threads) {
     thread_pool const pool(threads);
     std::vector<double> mean(m.mesh.positions.size());
+    estimator_room room;
+    surface_view view = m.view();
+    view.room = &room;
     for (auto _ : state) {
-        if (threads == 1) Estimator{}(m.view(), mean, inline_executor{});
-        else Estimator{}(m.view(), mean, pool);
+        if (threads == 1) Estimator{}(view, mean, inline_executor{});
+        else Estimator{}(view, mean, pool);
         benchmark::DoNotOptimize(mean.data());
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mean.size()));

@@ -20,6 +20,7 @@
 #include <tafoni/curvature/cotangent.hpp>
 #include <tafoni/curvature/displacement.hpp>
 #include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/curvature/estimator_room.hpp>
 #include <tafoni/curvature/quadric_fit.hpp>
 #include <tafoni/curvature/tensor_fit.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
@@ -63,6 +64,7 @@
 #include <tafoni/field/strata.hpp>
 #include <tafoni/fluid/concepts.hpp>
 #include <tafoni/fluid/emitter.hpp>
+#include <tafoni/fluid/facing_contacts.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>

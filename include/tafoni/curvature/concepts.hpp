@@ -5,6 +5,7 @@
 
 #include <tafoni/core/executor.hpp>
 #include <tafoni/core/vector.hpp>
+#include <tafoni/curvature/estimator_room.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
 
 #include <array>
@@ -19,6 +20,7 @@ struct surface_view {
     std::span<vec3 const> positions{};
     std::span<std::array<std::uint32_t, 3> const> triangles{};  ///< counter-clockwise seen from outside
     vertex_rings const* rings = nullptr;                        ///< of these triangles; never null
+    estimator_room* room = nullptr;                             ///< where scratch memory is kept; null: it is not kept
 };
 
 /// Mean curvature H = (k1 + k2) / 2 at every vertex, in 1 / length unit.

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace tafoni {
 
@@ -24,7 +23,7 @@ struct alignas(64) laplacian_sum {
     [[nodiscard]] vec3 normal() const noexcept { return vec3{of[1][1], of[2][0], of[2][1]}; }
     [[nodiscard]] double area() const noexcept { return of[3][0]; }
 };
-inline void add_to(laplacian_sum& at, laplacian_sum const& corner) noexcept {
+[[gnu::always_inline]] inline void add_to(laplacian_sum& at, laplacian_sum const& corner) noexcept {
     for (std::size_t k = 0; k < 4; ++k) at.of[k] += corner.of[k];
 }
 
@@ -42,7 +41,7 @@ struct face_cotangents {
     three<T> normal{};
     corner_weights<T> weights{};
 
-    explicit face_cotangents(face_sides<T> const& t) noexcept : a(t.a), b(t.b) {
+    [[gnu::always_inline]] explicit face_cotangents(face_sides<T> const& t) noexcept : a(t.a), b(t.b) {
         T const area2 = lane_root(t.det);
         T const inverse = 1 / area2;
         auto const valid = t.valid();
@@ -50,18 +49,10 @@ struct face_cotangents {
                    where(valid, three<T>{t.ab * inverse, (t.aa - t.ab) * inverse, (t.bb - t.ab) * inverse})};
         normal = where(valid, t.normal);
     }
-    face_cotangents(three<T> const& side_a, three<T> const& side_b, corner_weights<T> const& w) noexcept
-        : a(side_a), b(side_b), weights(w) {
-        // The parts of the area of a valid triangle add up to it; of others they are zero.
-        normal = where(w.area.x + w.area.y + w.area.z > 0, cross(a, b));
-    }
-    [[nodiscard]] corner_weights<double> part(std::size_t which) const noexcept {
-        return {one_of(weights.area, which), one_of(weights.cot, which)};
-    }
-    [[nodiscard]] laplacian_sum corner(std::size_t k, std::size_t which) const noexcept {
+    [[nodiscard, gnu::always_inline]] laplacian_sum corner(std::size_t k, std::size_t which) const noexcept {
         // Side a leads from corner 0 to 1 and lies opposite to corner 2, b from 0 to 2 opposite to 1.
         three<T> const& cot = weights.cot;
-        auto const along = [&](T const& p, T const& q) {
+        auto const along = [&](T const& p, T const& q) __attribute__((always_inline)) {
             return k == 0 ? -(cot.z * p) - cot.y * q : k == 1 ? cot.z * p - cot.x * (q - p) : cot.y * q + cot.x * (q - p);
         };
         T const x = along(a.x, b.x);
@@ -75,13 +66,9 @@ struct face_cotangents {
 struct faces_cotangents {
     surface_view const& surface;
 
-    [[nodiscard]] auto of(std::size_t f) const noexcept { return face_cotangents<double>(sides_of(surface, f)); }
-    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f) const noexcept { return face_cotangents<double>(sides_of(surface, f)); }
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f, std::size_t g) const noexcept {
         return face_cotangents<number_pair>(sides_of(surface, f, g));
-    }
-    [[nodiscard]] auto of(std::size_t f, corner_weights<double> const& k) const noexcept {
-        corner_differences const d{surface.positions, surface.triangles};
-        return face_cotangents<double>(d.of(f, 1), d.of(f, 2), k);
     }
 };
 
@@ -95,19 +82,21 @@ struct faces_cotangents {
 /// small error that refinement does not remove. At the border of an open mesh the mean of the inner
 /// neighbours' values, or 0. Models `curvature_estimator`.
 struct cotangent {
-    /// O(vertices + faces); 64 bytes of scratch memory per vertex, or 48 per face with several threads.
+    /// O(vertices + faces); 64 bytes of scratch memory per vertex, with several threads and 4 per face.
     /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         detail::require_one_per_vertex("cotangent", s, mean.size());
-        auto sums = detail::corner_scratch<detail::laplacian_sum>(s, executor);
-        detail::sum_corners(
-            s, std::span<detail::laplacian_sum>(sums), detail::laplacian_sum{}, detail::faces_cotangents{s}, executor,
-            [&](std::size_t v, detail::laplacian_sum const& sum) {
-                vec3 const normal = sum.normal();
-                double const scale = length(normal) * sum.area();
-                mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges(), normal) / scale) : 0.0;
-            });
+        detail::with_room(s, [&](estimator_room& room) {
+            estimator_room::array<detail::laplacian_sum> const sums(room, s.positions.size());
+            detail::sum_corners(
+                s, detail::corner_shares(s, room, executor), std::span<detail::laplacian_sum>(sums), detail::laplacian_sum{}, detail::faces_cotangents{s}, executor,
+                [&](std::size_t v, detail::laplacian_sum const& sum) {
+                    vec3 const normal = sum.normal();
+                    double const scale = length(normal) * sum.area();
+                    mean[v] = scale > 0 && !s.rings->is_border(v) ? 0.25 * (dot(sum.edges(), normal) / scale) : 0.0;
+                });
+        });
         detail::fill_border(s, mean, executor);
     }
 };

@@ -15,11 +15,13 @@ namespace tafoni {
 namespace detail {
 
 struct estimate_curvature_fn {
-    /// H per vertex, 1 / length unit, positive on ridges. O(vertices + faces) beside the estimator's own cost.
+    /// H per vertex, 1 / length unit, positive on ridges. O(vertices + faces) beside the estimator's own cost. Who
+    /// estimates again and again may pass `room`, which keeps the estimator's scratch memory.
     /// \throws invalid_input  as `triangle_surface::copy_of`; `out_of_range` for a box longer than 2^200 or, but not a
     ///         point, shorter than 2^-200.
     template <polygon_mesh M, curvature_estimator Estimator = tensor_fit, executor E = inline_executor>
-    [[nodiscard]] std::vector<double> operator()(M const& mesh, Estimator const& estimator = {}, E const& executor = {}) const {
+    [[nodiscard]] std::vector<double> operator()(M const& mesh, Estimator const& estimator = {}, E const& executor = {},
+                                                 estimator_room* room = nullptr) const {
         triangle_surface const s = triangle_surface::copy_of(mesh);
         box3 box;
         for (vec3 const& p : s.positions) box.include(p);
@@ -32,14 +34,14 @@ struct estimate_curvature_fn {
         }
         vertex_rings const rings(s.positions.size(), s.triangles);
         std::vector<double> mean(s.positions.size());
-        estimator(surface_view{.positions = s.positions, .triangles = s.triangles, .rings = &rings}, mean, executor);
+        estimator(surface_view{.positions = s.positions, .triangles = s.triangles, .rings = &rings, .room = room}, mean, executor);
         return mean;
     }
 };
 
 }  // namespace detail
 
-/// `estimate_curvature(mesh)`, `estimate_curvature(mesh, estimator, executor)`.
+/// `estimate_curvature(mesh)`, `estimate_curvature(mesh, estimator, executor)`, `... executor, &room)`.
 inline constexpr detail::estimate_curvature_fn estimate_curvature{};
 
 }  // namespace tafoni

@@ -23,7 +23,7 @@ struct weighted_mean {
 
     [[nodiscard]] double half() const noexcept { return sums[1] > 0 ? 0.5 * (sums[0] / sums[1]) : 0.0; }
 };
-inline void add_to(weighted_mean& at, number_pair const& corner) noexcept { at.sums += corner; }
+[[gnu::always_inline]] inline void add_to(weighted_mean& at, number_pair const& corner) noexcept { at.sums += corner; }
 
 /// Half the trace of the tensor that fits the normals' differences along the three sides of a triangle best.
 ///
@@ -37,21 +37,15 @@ struct face_mean_curvature {
 
     face_mean_curvature() = default;
     /// `da`, `db`: of the normals, as the sides of the positions.
-    face_mean_curvature(face_sides<T> const& t, three<T> const& da, three<T> const& db) noexcept {
+    [[gnu::always_inline]] face_mean_curvature(face_sides<T> const& t, three<T> const& da, three<T> const& db) noexcept {
         auto const valid = t.valid();
         T const area2 = lane_root(t.det);
         T const trace = (t.bb * dot(t.a, da) + t.aa * dot(t.b, db) - t.ab * (dot(t.a, db) + dot(t.b, da))) / t.det;
         twice_mean = valid ? trace : T{};
         area = where(valid, t.corner_areas(area2, 1 / area2));
     }
-    [[nodiscard]] number_pair corner(std::size_t k, std::size_t which) const noexcept {
+    [[nodiscard, gnu::always_inline]] number_pair corner(std::size_t k, std::size_t which) const noexcept {
         return both(twice_mean * area[k], area[k], which);
-    }
-    [[nodiscard]] face_mean_curvature<double> part(std::size_t which) const noexcept {
-        face_mean_curvature<double> one;
-        one.twice_mean = one_of(twice_mean, which);
-        one.area = one_of(area, which);
-        return one;
     }
 };
 
@@ -59,13 +53,12 @@ struct face_mean_curvatures {
     surface_view const& surface;
     corner_differences normal;
 
-    [[nodiscard]] auto of(std::size_t f) const noexcept {
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f) const noexcept {
         return face_mean_curvature<double>(sides_of(surface, f), normal.of(f, 1), normal.of(f, 2));
     }
-    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f, std::size_t g) const noexcept {
         return face_mean_curvature<number_pair>(sides_of(surface, f, g), normal.of_two(f, g, 1), normal.of_two(f, g, 2));
     }
-    [[nodiscard]] auto const& of(std::size_t, face_mean_curvature<double> const& m) const noexcept { return m; }
 
     /// At `v` by the triangles that do not reach the border: normals there lean to one side. Triangles that do reach it
     /// decide only where there are no others.
@@ -93,23 +86,26 @@ struct face_mean_curvatures {
 /// irregular ones as noisy as every method of one ring: see the table in curvature/README.md. Models
 /// `curvature_estimator`.
 struct tensor_fit {
-    /// O(vertices + faces); 40 bytes of scratch memory per vertex, or 24 and 48 per face with several threads.
+    /// O(vertices + faces); 40 bytes of scratch memory per vertex, with several threads and 4 per face.
     /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {
         detail::require_one_per_vertex("tensor_fit", s, mean.size());
-        std::vector<vec3> normal(s.positions.size());
-        vertex_normals(s, normal, executor);
-        auto sums = detail::corner_scratch<detail::weighted_mean>(s, executor);
-        detail::sum_corners(
-            s, std::span<detail::weighted_mean>(sums), detail::weighted_mean{},
-            detail::face_mean_curvatures{s, {normal, s.triangles}}, executor,
-            [&](std::size_t v, detail::weighted_mean const& at) { mean[v] = at.half(); });
-        for (std::size_t v = 0; v < mean.size(); ++v) {
-            if (!s.rings->is_border(v)) continue;
-            at_border(s, normal, mean, executor);
-            return;
-        }
+        detail::with_room(s, [&](estimator_room& room) {
+            estimator_room::array<vec3> const normal(room, s.positions.size());
+            estimator_room::array<detail::weighted_mean> const sums(room, s.positions.size());
+            detail::corner_shares const shares(s, room, executor);
+            detail::vertex_normals_fn::shared(s, shares, normal, executor);
+            detail::sum_corners(
+                s, shares, std::span<detail::weighted_mean>(sums), detail::weighted_mean{},
+                detail::face_mean_curvatures{s, {normal, s.triangles}}, executor,
+                [&](std::size_t v, detail::weighted_mean const& at) { mean[v] = at.half(); });
+            for (std::size_t v = 0; v < mean.size(); ++v) {
+                if (!s.rings->is_border(v)) continue;
+                at_border(s, normal, mean, executor);
+                return;
+            }
+        });
     }
 
 private:

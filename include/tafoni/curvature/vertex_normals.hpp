@@ -26,7 +26,7 @@ struct weighted_face_normal {
     three<T> weight{};
 
     weighted_face_normal() = default;
-    explicit weighted_face_normal(face_sides<T> const& t) noexcept {
+    [[gnu::always_inline]] explicit weighted_face_normal(face_sides<T> const& t) noexcept {
         T const a = 1 / t.aa;
         T const b = 1 / t.bb;
         T const c = 1 / t.cc();
@@ -34,19 +34,13 @@ struct weighted_face_normal {
         area = where(valid, t.normal);
         weight = where(valid, three<T>{a * b, a * c, b * c});
     }
-    [[nodiscard]] at_corner corner(std::size_t k, std::size_t which) const noexcept {
+    [[nodiscard, gnu::always_inline]] at_corner corner(std::size_t k, std::size_t which) const noexcept {
         T const& w = weight[k];
         return {both(area.x * w, area.y * w, which), one_of(area.z * w, which)};
     }
-    [[nodiscard]] weighted_face_normal<double> part(std::size_t which) const noexcept {
-        weighted_face_normal<double> one;
-        one.area = one_of(area, which);
-        one.weight = one_of(weight, which);
-        return one;
-    }
 };
 template <class AtCorner>
-void add_to(vec3& sum, AtCorner const& n) noexcept {
+[[gnu::always_inline]] inline void add_to(vec3& sum, AtCorner const& n) noexcept {
     number_pair xy;
     std::memcpy(&xy, sum.data(), sizeof xy);
     xy += n.xy;
@@ -57,20 +51,23 @@ void add_to(vec3& sum, AtCorner const& n) noexcept {
 struct weighted_face_normals {
     surface_view const& surface;
 
-    [[nodiscard]] auto of(std::size_t f) const noexcept { return weighted_face_normal<double>(sides_of(surface, f)); }
-    [[nodiscard]] auto of(std::size_t f, std::size_t g) const noexcept {
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f) const noexcept { return weighted_face_normal<double>(sides_of(surface, f)); }
+    [[nodiscard, gnu::always_inline]] auto of(std::size_t f, std::size_t g) const noexcept {
         return weighted_face_normal<number_pair>(sides_of(surface, f, g));
     }
-    [[nodiscard]] auto const& of(std::size_t, weighted_face_normal<double> const& n) const noexcept { return n; }
 };
 
 struct vertex_normals_fn {
-    /// `normals` has one entry per vertex. O(vertices + faces); 48 bytes of scratch memory per face with several threads.
+    /// `normals` has one entry per vertex. O(vertices + faces); 4 bytes of scratch memory per face with several threads.
     /// \throws invalid_input  `attribute_length` for other than one normal per vertex, `bad_parameter` for other rings.
     template <executor E = inline_executor>
     void operator()(surface_view const& s, std::span<vec3> normals, E const& executor = {}) const {
         require_one_per_vertex("vertex_normals", s, normals.size());
-        sum_corners(s, normals, vec3{0, 0, 0}, weighted_face_normals{s}, executor,
+        with_room(s, [&](estimator_room& room) { shared(s, corner_shares(s, room, executor), normals, executor); });
+    }
+    template <executor E>
+    static void shared(surface_view const& s, corner_shares const& shares, std::span<vec3> normals, E const& executor) {
+        sum_corners(s, shares, normals, vec3{0, 0, 0}, weighted_face_normals{s}, executor,
                     [&](std::size_t v, vec3 const& sum) { normals[v] = normalized(sum); });
     }
 };

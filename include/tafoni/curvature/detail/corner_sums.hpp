@@ -10,15 +10,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tafoni::detail {
 
-inline constexpr std::size_t face_grain = 4096;
 inline constexpr std::size_t vertex_grain = 2048;
 
 /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for rings of no or
@@ -38,92 +35,129 @@ inline void require_one_per_vertex(char const* who, surface_view const& s, std::
     }
 }
 
-/// Room for numbers, not initialised, that the calling thread keeps for its next call: fresh pages cost several threads
-/// more than the sums that they hold. A call from within the use of one gets room of its own.
-template <class T>
-class kept_array {
+/// `with(room)`, the surface's own or one for this call.
+template <class With>
+void with_room(surface_view const& s, With const& with) {
+    if (s.room != nullptr) return with(*s.room);
+    estimator_room fresh;
+    with(fresh);
+}
+
+/// The vertices in consecutive shares, and the triangles that reach each of them, for threads that sum over corners.
+///
+/// A share is summed by one thread: it meets its triangles in ascending order, so that the sums are those of one thread.
+/// A triangle between shares is worked out in each of them; in meshes whose vertices stand in some order those are few.
+class corner_shares {
 public:
-    explicit kept_array(std::size_t size) : mine_(std::move(kept())) {
-        if (mine_.size < size) {
-            mine_.data.reset();
-            mine_.size = 0;
-            mine_.data = std::make_unique_for_overwrite<T[]>(size);
-            mine_.size = size;
+    /// O(faces). Keeps 4 bytes of `room` per face and share, most of them never touched.
+    template <executor E>
+    corner_shares(surface_view const& s, estimator_room& room, E const& executor)
+        : vertices_(s.positions.size()), faces_(s.triangles.size()),
+          count_(std::clamp<std::size_t>(std::min(vertices_, faces_) / least, 1, std::min(executor.thread_count(), most))),
+          scale_((std::uint64_t{count_} << 32) / std::max<std::size_t>(vertices_, 1)), chunks_((faces_ + chunk - 1) / chunk),
+          faces_of_(room, count_ > 1 ? count_ * chunks_ * chunk : 0), length_(room, count_ > 1 ? chunks_ : 0) {
+        if (count_ == 1) return;
+        executor.for_blocks(faces_, chunk, [&](std::size_t begin, std::size_t end) {
+            std::array<std::uint32_t, most> n{};
+            std::uint32_t* const list = faces_of_.begin() + begin * count_;
+            auto const add = [&](std::size_t share, std::size_t f) { list[share * chunk + n[share]++] = static_cast<std::uint32_t>(f); };
+            for (std::size_t f = begin; f < end; ++f) {
+                auto const& t = s.triangles[f];
+                std::size_t const i = of(t[0]);
+                std::size_t const j = of(t[1]);
+                std::size_t const k = of(t[2]);
+                add(i, f);
+                if (i == j && j == k) continue;
+                if (j != i) add(j, f);
+                if (k != i && k != j) add(k, f);
+            }
+            length_[begin / chunk] = n;
+        });
+    }
+
+    [[nodiscard]] std::size_t count() const noexcept { return count_; }
+    [[nodiscard]] std::size_t begin(std::size_t share) const noexcept {
+        return share == count_ ? vertices_ : static_cast<std::size_t>(((std::uint64_t{share} << 32) + scale_ - 1) / scale_);
+    }
+    /// `f(list)` for the ascending lists of triangles that together reach a share, themselves ascending.
+    template <class F>
+    void for_lists(std::size_t share, F const& f) const {
+        for (std::size_t c = 0; c < chunks_; ++c) {
+            f(std::span<std::uint32_t const>(faces_of_.begin() + (c * count_ + share) * chunk, length_[c][share]));
         }
     }
-    kept_array(kept_array const&) = delete;
-    kept_array& operator=(kept_array const&) = delete;
-    ~kept_array() { kept() = std::move(mine_); }
-
-    [[nodiscard]] T& operator[](std::size_t i) const noexcept { return mine_.data[i]; }
 
 private:
-    struct room {
-        std::unique_ptr<T[]> data{};
-        std::size_t size = 0;
+    [[nodiscard]] std::size_t of(std::uint32_t v) const noexcept { return static_cast<std::size_t>((v * scale_) >> 32); }
 
-        room() = default;
-        room(room&& other) noexcept : data(std::move(other.data)), size(std::exchange(other.size, 0)) {}
-        room& operator=(room&& other) noexcept {
-            data = std::move(other.data);
-            size = std::exchange(other.size, 0);
-            return *this;
-        }
-    };
-    static room& kept() {
-        static thread_local room one;
-        return one;
-    }
-    room mine_;
+    static constexpr std::size_t chunk = 2048;
+    static constexpr std::size_t most = 16;
+    static constexpr std::size_t least = 64;  ///< vertices in a share
+    std::size_t vertices_;
+    std::size_t faces_;
+    std::size_t count_;
+    std::uint64_t scale_;
+    std::size_t chunks_;
+    estimator_room::array<std::uint32_t> faces_of_;
+    estimator_room::array<std::array<std::uint32_t, most>> length_;
 };
+
+/// `sum_corners` by one thread.
+template <class Sum, class Source, class Finish>
+void sum_all_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Source const& source, Finish const& finish) {
+    std::fill(sums.begin(), sums.end(), zero);
+    auto const add = [&](std::size_t f, auto const& face, std::size_t which) __attribute__((always_inline)) {
+        auto const [i, j, k] = s.triangles[f];
+        add_to(sums[i], face.corner(0, which));
+        add_to(sums[j], face.corner(1, which));
+        add_to(sums[k], face.corner(2, which));
+    };
+    std::size_t const faces = s.triangles.size();
+    for (std::size_t f = 0; f + 1 < faces; f += 2) {
+        auto const two = source.of(f, f + 1);
+        add(f, two, 0);
+        add(f + 1, two, 1);
+    }
+    if (faces % 2 == 1) add(faces - 1, source.of(faces - 1), 0);
+    for (std::size_t v = 0; v < sums.size(); ++v) finish(v, sums[v]);
+}
 
 /// `finish(v, sum)` for every vertex, with the sum over the corners at v, by ascending face, of what a face gives.
 ///
-/// `source.of(f)` and `source.of(f, g)`, of two triangles side by side, have `corner(k, which)`, what is added to a `Sum`
-/// (zeros for a triangle without area), and `part(which)`, what is kept of it in between; `source.of(f, part)` gives it again. One thread adds corners as the faces come, in `sums` (one entry per vertex; of several threads none);
-/// several keep the parts and gather: the same additions in the same order. O(faces).
+/// `source.of(f)` and `source.of(f, g)`, of two triangles side by side, have `corner(k, which)`, what is added to a `Sum`:
+/// zeros for a triangle without area. `sums` has one entry per vertex. The same additions in the same order for every
+/// number of shares. O(faces).
 template <class Sum, class Source, executor E, class Finish>
-void sum_corners(surface_view const& s, std::span<Sum> sums, Sum const& zero, Source const& source, E const& executor,
-                 Finish const& finish) {
-    std::size_t const faces = s.triangles.size();
-    std::size_t const vertices = s.positions.size();
-    if (executor.thread_count() <= 1) {
-        std::fill(sums.begin(), sums.end(), zero);
-        for (std::size_t f = 0; f + 1 < faces; f += 2) {
-            auto const two = source.of(f, f + 1);
-            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[f][k]], two.corner(k, 0));
-            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[f + 1][k]], two.corner(k, 1));
-        }
-        if (faces % 2 == 1) {
-            auto const last = source.of(faces - 1);
-            for (std::size_t k = 0; k < 3; ++k) add_to(sums[s.triangles[faces - 1][k]], last.corner(k, 0));
-        }
-        for (std::size_t v = 0; v < vertices; ++v) finish(v, sums[v]);
-        return;
-    }
-    kept_array<decltype(source.of(faces).part(faces))> const parts(faces);
-    executor.for_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
-        std::size_t f = begin;
-        for (; f + 1 < end; f += 2) {
-            auto const two = source.of(f, f + 1);
-            parts[f] = two.part(0);
-            parts[f + 1] = two.part(1);
-        }
-        if (f < end) parts[f] = source.of(f).part(0);
+void sum_corners(surface_view const& s, corner_shares const& shares, std::span<Sum> sums, Sum const& zero, Source const& source,
+                 E const& executor, Finish const& finish) {
+    if (shares.count() == 1) return sum_all_corners(s, sums, zero, source, finish);
+    executor.for_blocks(shares.count(), 1, [&](std::size_t share, std::size_t) {
+        std::size_t const begin = shares.begin(share);
+        std::size_t const size = shares.begin(share + 1) - begin;
+        Sum* const mine = sums.data() + begin;
+        std::fill_n(mine, size, zero);
+        Sum other = zero;  // what goes to the vertices of other shares, which see to it themselves
+        auto const at = [&](std::size_t v) -> Sum& {
+            std::array<Sum*, 2> const places{&other, sums.data() + v};  // no branch: between shares it goes either way
+            return *places[v - begin < size ? 1 : 0];
+        };
+        auto const add = [&](std::size_t f, auto const& face, std::size_t which) __attribute__((always_inline)) {
+            auto const [i, j, k] = s.triangles[f];
+            add_to(at(i), face.corner(0, which));
+            add_to(at(j), face.corner(1, which));
+            add_to(at(k), face.corner(2, which));
+        };
+        shares.for_lists(share, [&](std::span<std::uint32_t const> list) {
+            std::size_t k = 0;
+            for (; k + 1 < list.size(); k += 2) {
+                auto const two = source.of(list[k], list[k + 1]);
+                add(list[k], two, 0);
+                add(list[k + 1], two, 1);
+            }
+            if (k < list.size()) add(list[k], source.of(list[k]), 0);
+        });
+        for (std::size_t v = 0; v < size; ++v) finish(begin + v, mine[v]);
     });
-    executor.for_blocks(vertices, vertex_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            Sum sum = zero;
-            for (auto const& c : s.rings->faces(v)) add_to(sum, source.of(c.face, parts[c.face]).corner(c.place, 0));
-            finish(v, sum);
-        }
-    });
-}
-
-/// Scratch for `sum_corners`.
-template <class Sum, executor E>
-[[nodiscard]] std::vector<Sum> corner_scratch(surface_view const& s, E const& executor) {
-    return std::vector<Sum>(executor.thread_count() <= 1 ? s.positions.size() : 0);
 }
 
 /// At every border vertex the mean of its inner neighbours; without any, that of the border vertices beside it that have

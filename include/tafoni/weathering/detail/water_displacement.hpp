@@ -38,8 +38,10 @@ public:
         near_.find(water, surface.positions, influence, square_, threads);
         mean_.resize(n);
         normal_.resize(n);
-        process.estimator(surface, std::span<double>(mean_), threads);
-        tafoni::vertex_normals(surface, normal_, threads);
+        surface_view at = surface;
+        at.room = &room_;
+        process.estimator(at, std::span<double>(mean_), threads);
+        tafoni::vertex_normals(at, normal_, threads);
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
         for (double const h : mean_) {
@@ -104,6 +106,7 @@ private:
     std::vector<double> square_{};
     std::vector<double> mean_{};
     std::vector<vec3> normal_{};
+    estimator_room room_{};
 };
 
 }  // namespace tafoni::detail
