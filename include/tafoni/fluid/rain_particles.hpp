@@ -10,6 +10,7 @@
 #include <tafoni/fluid/detail/fluid_bytes.hpp>
 #include <tafoni/fluid/detail/visit_order.hpp>
 #include <tafoni/fluid/emitter.hpp>
+#include <tafoni/fluid/facing_contacts.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -210,7 +211,7 @@ private:
         boundary_contact nearest;
         double near = std::numeric_limits<double>::infinity();
         vec3 push{0, 0, 0};
-        walls.for_each_contact(d.position, options_.radius, [&](boundary_contact const& c) {
+        for_each_facing_contact(walls, d.position, options_.radius, [&](boundary_contact const& c) {
             double const deep = rest - c.distance;
             add(d.velocity, std::max(std::min(deep, 0.0) / dt - dot(d.velocity, c.normal), 0.0), c.normal);
             if (deep > 0) add(push, deep, c.normal);

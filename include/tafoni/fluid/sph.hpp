@@ -11,6 +11,7 @@
 #include <tafoni/fluid/detail/particle_grid.hpp>
 #include <tafoni/fluid/detail/sorted_fluid.hpp>
 #include <tafoni/fluid/emitter.hpp>
+#include <tafoni/fluid/facing_contacts.hpp>
 #include <tafoni/fluid/sph_options.hpp>
 
 #include <algorithm>
@@ -305,7 +306,7 @@ private:
                 double const far = length(in);
                 if (far > 0) a += options_.toward / far * in;
             }
-            walls.for_each_contact(p, reach_, [&](boundary_contact const& c) {
+            for_each_facing_contact(walls, p, reach_, [&](boundary_contact const& c) {
                 double const f = stiffness_ * (reach_ - c.distance) - damping_ * dot(v, c.normal);
                 a += f * c.normal;
             });

@@ -6,6 +6,7 @@
 #include <tafoni/core/error.hpp>
 #include <tafoni/core/executor.hpp>
 #include <tafoni/fluid/detail/visit_order.hpp>
+#include <tafoni/fluid/facing_contacts.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
@@ -48,7 +49,7 @@ public:
                 vec3 const p = fluid.position(i);
                 std::size_t const before = out.contacts.size();
                 std::int64_t load = 0;
-                walls.for_each_contact(p, reach, [&](boundary_contact const& c) {
+                for_each_facing_contact(walls, p, reach, [&](boundary_contact const& c) {
                     std::int64_t taken = 0;
                     if constexpr (exchange_rule<Process>) {
                         if (out.contacts.size() == before) load = loads.all()[i].units;
