@@ -14,6 +14,10 @@
 
 namespace tafoni {
 
+namespace detail {
+class mended_rings;
+}
+
 /// One-ring adjacency of a triangle mesh, which may be open, non-manifold or degenerate.
 ///
 /// Lists are in ascending order, so that sums over them have one order. A triangle that names a vertex
@@ -45,7 +49,7 @@ public:
         border_.assign(vertices, 0);
         std::vector<std::uint32_t> ring;
         for (std::size_t v = 0; v < vertices; ++v) {
-            if (!add_closed_fan(v, triangles)) add_any(v, triangles, ring);
+            if (add_neighbors(faces(v), triangles, neighbors_, ring)) border_[v] = 1;
             neighbor_begin_[v + 1] = static_cast<std::uint32_t>(neighbors_.size());
         }
     }
@@ -54,9 +58,15 @@ public:
     struct corner {
         std::uint32_t face = 0;
         std::uint32_t place = 0;  ///< 0, 1 or 2
+
+        bool operator==(corner const&) const = default;
     };
+    /// Whether all lists are equal.
+    bool operator==(vertex_rings const&) const = default;
 
     [[nodiscard]] std::size_t vertex_count() const noexcept { return border_.size(); }
+    /// Three for every triangle that names no vertex twice.
+    [[nodiscard]] std::size_t corner_count() const noexcept { return corners_.size(); }
     /// Triangles at a vertex, ascending.
     [[nodiscard]] std::span<corner const> faces(std::size_t v) const noexcept {
         return {corners_.data() + face_begin_[v], corners_.data() + face_begin_[v + 1]};
@@ -69,11 +79,18 @@ public:
     [[nodiscard]] bool is_border(std::size_t v) const noexcept { return border_[v] != 0; }
 
 private:
+    friend class detail::mended_rings;
+
+    using triangle_span = std::span<std::array<std::uint32_t, 3> const>;
     static constexpr std::size_t most_in_fan = 16;
 
-    /// Neighbours where each leads one triangle in and one out, as at nearly all vertices; false elsewhere.
-    bool add_closed_fan(std::size_t v, std::span<std::array<std::uint32_t, 3> const> triangles) {
-        std::span<corner const> const around = faces(v);
+    /// Appends the neighbours of the vertex with the triangles `around` it; whether it lies on the border. O(k log k).
+    static bool add_neighbors(std::span<corner const> around, triangle_span triangles, std::vector<std::uint32_t>& neighbors,
+                              std::vector<std::uint32_t>& scratch) {
+        return !add_closed_fan(around, triangles, neighbors) && add_any(around, triangles, neighbors, scratch);
+    }
+    /// Where each neighbour leads one triangle in and one out, as at nearly all vertices; false elsewhere.
+    static bool add_closed_fan(std::span<corner const> around, triangle_span triangles, std::vector<std::uint32_t>& neighbors) {
         std::size_t const n = around.size();
         if (n > most_in_fan) return false;
         std::array<std::uint32_t, most_in_fan> out;
@@ -105,23 +122,26 @@ private:
         std::size_t const all = n * (n - 1) / 2;
         if (ranks != all || other_ranks != all) return false;
         if (!std::equal(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n), other.begin())) return false;
-        neighbors_.insert(neighbors_.end(), sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
+        neighbors.insert(neighbors.end(), sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
         return true;
     }
-    void add_any(std::size_t v, std::span<std::array<std::uint32_t, 3> const> triangles, std::vector<std::uint32_t>& ring) {
+    static bool add_any(std::span<corner const> around, triangle_span triangles, std::vector<std::uint32_t>& neighbors,
+                        std::vector<std::uint32_t>& ring) {
         ring.clear();
-        for (corner const& c : faces(v)) {
+        for (corner const& c : around) {
             ring.push_back(triangles[c.face][(c.place + 1) % 3]);
             ring.push_back(triangles[c.face][(c.place + 2) % 3]);
         }
         std::sort(ring.begin(), ring.end());
+        bool border = false;
         for (std::size_t k = 0; k < ring.size();) {
             std::size_t e = k + 1;
             while (e < ring.size() && ring[e] == ring[k]) ++e;
-            if (e - k == 1) border_[v] = 1;
-            neighbors_.push_back(ring[k]);
+            if (e - k == 1) border = true;
+            neighbors.push_back(ring[k]);
             k = e;
         }
+        return border;
     }
 
     std::vector<std::uint32_t> face_begin_{};
