@@ -175,7 +175,7 @@ private:
         contacts_.find(process_, fluid_, walls_[0], loads_now_, unit_, dt, threads);
         if constexpr (!exchange_rule<Process>) {
             displacement_.find(process_, {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_},
-                               border_.kept(), contacts_.points(), mean_edge_, most, next_, threads);
+                               border_.kept(), contacts_, mean_edge_, most, next_, threads);
         }
         if (options_.check_every > 0) look_around(most, threads);
         // Of what follows only memory may run out; the iteration is taken back then.

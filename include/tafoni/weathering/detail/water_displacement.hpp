@@ -12,6 +12,8 @@
 #include <tafoni/weathering/detail/border_neighbors.hpp>
 #include <tafoni/weathering/detail/held_borders.hpp>
 #include <tafoni/weathering/detail/near_water.hpp>
+#include <tafoni/weathering/detail/water_contacts.hpp>
+#include <tafoni/weathering/detail/wet_side.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,15 +29,21 @@ namespace tafoni::detail {
 /// Equations 9.4 to 9.7 of Skorkovská's thesis; keeps its memory from use to use.
 class water_displacement {
 public:
-    /// Puts into `next` where the vertices go that are within the influence of one of `water`; `mean_edge` and `most` in
-    /// length units, `kept` the coordinates that border vertices keep or empty. O(vertices + faces + water).
+    /// Puts into `next` where the vertices go that are within the influence of the water that touches, on its side of the
+    /// wall; `mean_edge` and `most` in length units, `kept` the coordinates that border vertices keep or empty.
+    /// O(vertices + faces + water).
     template <class Process, executor E>
-    void find(Process const& process, surface_view const& surface, std::span<axis_bits const> kept, std::span<vec3 const> water,
+    void find(Process const& process, surface_view const& surface, std::span<axis_bits const> kept, water_contacts const& water,
               double mean_edge, double most, std::vector<vec3>& next, E const& threads) {
         std::size_t const n = surface.positions.size();
         double const influence = process.influence > 0 ? process.influence : mean_edge;
         square_.resize(n);
-        near_.find(water, surface.positions, influence, square_, threads);
+        near_.find(water.points(), surface.positions, influence, square_, threads);
+        side_.keep(*surface.rings, surface.positions, influence, square_, [&](auto const& visit) {
+            water.for_each([&](water_contacts::contact const& c) {
+                for (std::uint32_t const v : surface.triangles[c.face]) visit(v);
+            });
+        });
         mean_.resize(n);
         normal_.resize(n);
         surface_view at = surface;
@@ -103,6 +111,7 @@ private:
     }
 
     near_water near_{};
+    wet_side side_{};
     std::vector<double> square_{};
     std::vector<double> mean_{};
     std::vector<vec3> normal_{};
