@@ -102,9 +102,11 @@
 #include <tafoni/graph/make_link_graph.hpp>
 #include <tafoni/graph/split.hpp>
 #include <tafoni/graph/surface_walk.hpp>
+#include <tafoni/io/curvature_channels.hpp>
 #include <tafoni/io/esri_ascii.hpp>
 #include <tafoni/io/fill_from_vox.hpp>
 #include <tafoni/io/graph_vtp.hpp>
+#include <tafoni/io/hydraulic_channels.hpp>
 #include <tafoni/io/mesh_file.hpp>
 #include <tafoni/io/obj.hpp>
 #include <tafoni/io/ply.hpp>
@@ -122,6 +124,7 @@
 #include <tafoni/io/voxel_channels.hpp>
 #include <tafoni/io/vtk_xml.hpp>
 #include <tafoni/io/weathered_channels.hpp>
+#include <tafoni/io/wrinkle_channels.hpp>
 #include <tafoni/io/write_obj.hpp>
 #include <tafoni/io/write_ply.hpp>
 #include <tafoni/io/write_pvd.hpp>
