@@ -91,7 +91,7 @@ public:
     template <fluid_boundary B, executor E>
     double step(B const& walls, E const& threads) {
         double const dt = options_.frame > 0 ? options_.frame : stable(fastest());
-        order_.sort(walls, drops_.size(), [&](std::size_t i) -> vec3 const& { return drops_[i].position; });
+        order_.sort(walls, drops_.size(), [&](std::size_t i) -> vec3 const& { return drops_[i].position; }, threads);
         next_.resize(drops_.size());
         threads.for_blocks(drops_.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {

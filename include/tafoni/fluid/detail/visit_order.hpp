@@ -3,6 +3,7 @@
 #ifndef TAFONI_FLUID_DETAIL_VISIT_ORDER_HPP
 #define TAFONI_FLUID_DETAIL_VISIT_ORDER_HPP
 
+#include <tafoni/core/executor.hpp>
 #include <tafoni/core/vector.hpp>
 
 #include <cstddef>
@@ -18,25 +19,33 @@ namespace tafoni::detail {
 class visit_order {
 public:
     /// O(n + blocks).
-    template <class Walls, class Position>
-    void sort(Walls const& walls, std::size_t n, Position const& position) {
+    template <class Walls, class Position, executor E>
+    void sort(Walls const& walls, std::size_t n, Position const& position, E const& threads) {
         order_.resize(n);
         away_ = 0;
         if constexpr (requires(vec3 const& p) { walls.block_of(p); }) {
             block_.resize(n);
-            begin_.assign(walls.block_count() + 1, 0);
+            threads.for_blocks(n, 2048, [&](std::size_t from, std::size_t to) {
+                for (std::size_t i = from; i < to; ++i) block_[i] = static_cast<std::uint32_t>(walls.block_of(position(i)));
+            });
+            // Most are away as a rule: they are told from the others without a branch, and only the others sorted.
+            close_.resize(n);
+            std::size_t close = 0;
             for (std::size_t i = 0; i < n; ++i) {
-                block_[i] = static_cast<std::uint32_t>(walls.block_of(position(i)));
-                ++begin_[block_[i]];
+                order_[away_] = close_[close] = static_cast<std::uint32_t>(i);
+                bool const here = block_[i] != 0;
+                close += here ? 1 : 0;
+                away_ += here ? 0 : 1;
             }
-            away_ = begin_[0];
-            std::uint32_t total = 0;
+            begin_.assign(walls.block_count(), 0);
+            for (std::size_t k = 0; k < close; ++k) ++begin_[block_[close_[k]]];
+            auto total = static_cast<std::uint32_t>(away_);
             for (std::uint32_t& b : begin_) {
                 std::uint32_t const here = b;
                 b = total;
                 total += here;
             }
-            for (std::size_t i = 0; i < n; ++i) order_[begin_[block_[i]]++] = static_cast<std::uint32_t>(i);
+            for (std::size_t k = 0; k < close; ++k) order_[begin_[block_[close_[k]]]++] = close_[k];
         } else {
             std::iota(order_.begin(), order_.end(), std::uint32_t{0});
         }
@@ -49,6 +58,7 @@ private:
     std::size_t away_ = 0;
     std::vector<std::uint32_t> order_{};
     std::vector<std::uint32_t> block_{};
+    std::vector<std::uint32_t> close_{};
     std::vector<std::uint32_t> begin_{};
 };
 

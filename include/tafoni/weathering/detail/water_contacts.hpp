@@ -34,7 +34,7 @@ public:
     template <class Process, class Fluid, executor E>
     void find(Process const& process, Fluid const& fluid, mesh_boundary const& walls, particle_loads const& loads,
               volume_unit const& unit, double dt, E const& threads) {
-        order_.sort(walls, fluid.particle_count(), [&](std::size_t i) { return fluid.position(i); });
+        order_.sort(walls, fluid.particle_count(), [&](std::size_t i) { return fluid.position(i); }, threads);
         std::size_t const away = order_.away();
         std::size_t const n = fluid.particle_count() - away;
         used_ = (n + grain - 1) / grain;
@@ -83,7 +83,7 @@ public:
     [[nodiscard]] std::span<vec3 const> points() const noexcept { return points_; }
 
 private:
-    static constexpr std::size_t grain = 2048;
+    static constexpr std::size_t grain = 256;
     static constexpr std::int64_t most_load = std::int64_t{1} << 60;  ///< that a particle carries, units
     static constexpr double pi = 3.14159265358979323846;
 
