@@ -3,18 +3,18 @@
 #ifndef TAFONI_WEATHERING_CURVATURE_RUN_HPP
 #define TAFONI_WEATHERING_CURVATURE_RUN_HPP
 
-#include <tafoni/core/elementary.hpp>
 #include <tafoni/core/executor.hpp>
 #include <tafoni/core/run_context.hpp>
-#include <tafoni/curvature/vertex_normals.hpp>
+#include <tafoni/curvature/concepts.hpp>
 #include <tafoni/geometry/self_intersections.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
-#include <tafoni/repair/collapse_short_edges.hpp>
+#include <tafoni/geometry/vertex_rings.hpp>
 #include <tafoni/weathering/curvature_checkpoint.hpp>
 #include <tafoni/weathering/curvature_weathering.hpp>
-#include <tafoni/weathering/detail/border_neighbors.hpp>
+#include <tafoni/weathering/detail/curvature_displacement.hpp>
 #include <tafoni/weathering/detail/door_scale.hpp>
 #include <tafoni/weathering/detail/edge_lengths.hpp>
+#include <tafoni/weathering/detail/edge_thinning.hpp>
 #include <tafoni/weathering/detail/held_vertices.hpp>
 
 #include <algorithm>
@@ -24,8 +24,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -71,17 +69,16 @@ public:
     template <polygon_mesh M>
     explicit curvature_run(M const& mesh, Process process = {}, curvature_options const& options = {})
         : process_((process.validate(), std::move(process))), options_((options.validate(), options)),
-          surface_(triangle_surface::copy_of(mesh)), scale_(surface_.positions), input_(surface_.positions),
-          input_triangles_(surface_.triangles),
-          input_hash_(detail::surface_hash(surface_)) {
-        scale_.enter(surface_.positions);
+          now_{.surface = triangle_surface::copy_of(mesh)}, scale_(now_.surface.positions), input_(now_.surface.positions),
+          input_triangles_(now_.surface.triangles), input_hash_(detail::surface_hash(now_.surface)) {
+        scale_.enter(now_.surface.positions);
         report_.step = 1 / options_.step_divisor;
         start_volume_ = volume();
-        new_vertex_.resize(surface_.positions.size());
-        for (std::size_t v = 0; v < new_vertex_.size(); ++v) new_vertex_[v] = vertex_index{v};
-        wear_.assign(surface_.positions.size(), 0.0);
-        input_of_ = new_vertex_;
-        if (options_.check_every > 0) safe_ = snapshot();
+        now_.new_vertex.resize(input_.size());
+        for (std::size_t v = 0; v < input_.size(); ++v) now_.new_vertex[v] = vertex_index{v};
+        now_.wear.assign(input_.size(), 0.0);
+        now_.input_of = now_.new_vertex;
+        if (options_.check_every > 0) safe_ = now_;
     }
 
     /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
@@ -103,26 +100,27 @@ public:
 
     /// The surface in the user's frame; vertices that never moved have the input's very coordinates. O(vertices + faces).
     [[nodiscard]] triangle_surface surface() const {
-        triangle_surface out = surface_;
+        triangle_surface out = now_.surface;
         for (std::size_t v = 0; v < out.positions.size(); ++v) {
-            out.positions[v] = input_of_[v].valid() ? input_[input_of_[v].value] : scale_.point_to_user(out.positions[v]);
+            vertex_index const still = now_.input_of[v];
+            out.positions[v] = still.valid() ? input_[still.value] : scale_.point_to_user(out.positions[v]);
         }
         return out;
     }
     /// Vertex of the input -> vertex now; of collapsed edges both ends lead to one.
-    [[nodiscard]] std::span<vertex_index const> new_vertex() const noexcept { return new_vertex_; }
+    [[nodiscard]] std::span<vertex_index const> new_vertex() const noexcept { return now_.new_vertex; }
     /// Length that each vertex has moved along its way, length unit; of a collapsed edge the longer way.
     [[nodiscard]] std::vector<double> wear() const {
-        std::vector<double> out = wear_;
+        std::vector<double> out = now_.wear;
         for (double& w : out) w = scale_.length_to_user(w);
         return out;
     }
     /// Mean curvature now, 1 / length unit. O(vertices + faces).
     template <executor Executor = inline_executor>
-    [[nodiscard]] std::vector<double> curvature(Executor const& threads = {}) {
-        refresh();
-        std::vector<double> h(surface_.positions.size());
-        process_.estimator(view(), h, threads);
+    [[nodiscard]] std::vector<double> curvature(Executor const& threads = {}) const {
+        std::vector<double> h(now_.surface.positions.size());
+        vertex_rings const own = fresh_ ? vertex_rings{} : vertex_rings(h.size(), now_.surface.triangles);
+        process_.estimator(view(fresh_ ? rings_ : own), h, threads);
         for (double& x : h) x = scale_.curvature_to_user(x);
         return h;
     }
@@ -138,10 +136,10 @@ public:
     /// Nothing is held any more.
     void replace(curvature_options const& options) {
         options.validate();
-        detail::curvature_state s = options.check_every > 0 ? snapshot() : detail::curvature_state{};
+        detail::curvature_state s = options.check_every > 0 ? now_ : detail::curvature_state{};
         s.held.clear();
         safe_ = std::move(s);
-        held_.clear();
+        now_.held.clear();
         holds_ = 0;
         report_.held = 0;
         report_.step = 1 / options.step_divisor;
@@ -151,7 +149,7 @@ public:
     // Checkpoints.
     /// The state as bytes, the same on every machine. O(vertices + faces).
     [[nodiscard]] std::vector<std::byte> checkpoint() const {
-        return detail::write_checkpoint({.now = snapshot(), .safe = safe_, .retries = report_.retries, .holds = holds_, .step = report_.step},
+        return detail::write_checkpoint({.now = now_, .safe = safe_, .retries = report_.retries, .holds = holds_, .step = report_.step},
                                         input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same policies and options: the same bits as without
@@ -168,24 +166,19 @@ public:
     }
 
 private:
-    [[nodiscard]] detail::curvature_state snapshot() const {
-        return {surface_, new_vertex_, wear_, input_of_, held_, report_.iterations, report_.edges_collapsed};
-    }
     void restore(detail::curvature_state s) noexcept {
-        surface_ = std::move(s.surface);
-        new_vertex_ = std::move(s.new_vertex);
-        wear_ = std::move(s.wear);
-        input_of_ = std::move(s.input_of);
-        held_ = std::move(s.held);
-        report_.held = static_cast<std::uint64_t>(std::count(held_.begin(), held_.end(), 1));
-        report_.iterations = s.iterations;
-        report_.edges_collapsed = s.edges_collapsed;
+        now_ = std::move(s);
+        report_.held = static_cast<std::uint64_t>(std::count(now_.held.begin(), now_.held.end(), 1));
+        told_totals();
         fresh_ = false;
         mean_edge_ = -1;
-        normal_.clear();
     }
-    [[nodiscard]] surface_view view() const noexcept {
-        return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_};
+    void told_totals() noexcept {
+        report_.iterations = now_.iterations;
+        report_.edges_collapsed = now_.edges_collapsed;
+    }
+    [[nodiscard]] surface_view view(vertex_rings const& rings) const noexcept {
+        return {.positions = now_.surface.positions, .triangles = now_.surface.triangles, .rings = &rings, .room = &room_};
     }
     template <executor Executor>
     void advance(std::uint64_t iterations, run_context const& context, Executor const& threads) {
@@ -214,9 +207,9 @@ private:
                     break;
                 }
             } else if (scheduled) {
-                safe_ = snapshot();
+                safe_ = now_;
                 holds_ = 0;
-                if (!held_.empty()) report_.step = std::min(2 * report_.step, 1 / options_.step_divisor);
+                if (!now_.held.empty()) report_.step = std::min(2 * report_.step, 1 / options_.step_divisor);
             } else if (!moved) {
                 break;
             }
@@ -231,109 +224,40 @@ private:
         return options_.check_every > 0 && report_.iterations % options_.check_every == 0 && report_.iterations > safe_.iterations;
     }
 
-    void refresh() {
-        if (fresh_) return;
-        rings_ = vertex_rings(surface_.positions.size(), surface_.triangles);
-        fresh_ = true;
-    }
-
     /// False where no vertex moves.
     template <executor Executor>
     bool iterate(Executor const& threads) {
-        refresh();
-        std::size_t const n = surface_.positions.size();
-        h_.resize(n);
-        next_.resize(n);
-        moved_.resize(n);
-        process_.estimator(view(), std::span<double>(h_), threads);
-        double const largest = detail::largest_curvature(h_, held_);
-        double const shrink = largest > 1 ? 1 / largest : 1.0;
-        double const most = largest > 1 ? 1.0 : largest;
-        if constexpr (!std::is_same_v<decltype(process_.direction), laplacian_direction>) {  // which looks at no normal
-            normal_.resize(n);
-            vertex_normals(view(), normal_, threads);
+        if (!fresh_) rings_ = vertex_rings(now_.surface.positions.size(), now_.surface.triangles);
+        fresh_ = true;
+        if (!(mean_edge_ >= 0)) mean_edge_ = detail::measure_edges(now_.surface.positions, rings_, threads).mean;
+        if (!displacement_.find(process_, view(rings_), scale_,
+                                {.power = options_.power, .reach = mean_edge_ * report_.step, .held = now_.held}, threads)) {
+            return false;
         }
-        if (!(mean_edge_ >= 0)) mean_edge_ = detail::measure_edges(surface_.positions, rings_, threads).mean;
-        double const reach = mean_edge_ * report_.step;
-        double const power = options_.power;
-        threads.for_blocks(n, detail::vertex_grain, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t> along;
-            for (std::size_t v = begin; v < end; ++v) {
-                vec3 const p = surface_.positions[v];
-                next_[v] = p;
-                moved_[v] = 0;
-                if (!(h_[v] > 0) || (!held_.empty() && held_[v] != 0)) continue;
-                double const h = std::min(h_[v] * shrink, 1.0);
-                std::span<std::uint32_t const> around = rings_.neighbors(v);
-                if (rings_.is_border(v)) around = detail::neighbors_along_border(rings_, surface_.triangles, v, along);
-                wear_point at{.position = scale_.point_to_user(p), .laplacian = vec3{0, 0, 0},
-                              .normal = normal_.empty() ? vec3{0, 0, 0} : normal_[v],
-                              .curvature = most > 0 ? h / most : 0.0};
-                for (std::uint32_t const w : around) at.laplacian += surface_.positions[w] - p;
-                double const share = 1 / static_cast<double>(around.size());
-                at.laplacian = vec3{at.laplacian[0] * share, at.laplacian[1] * share, at.laplacian[2] * share};
-                double const hard = std::max(process_.durability(at.position), Process::least_durability);
-                double const d = std::min((power == 1 ? h : elementary::pow(h, power)) / hard, 1.0) * reach;
-                vec3 const way = process_.direction.direction(at);
-                vec3 const step{d * way[0], d * way[1], d * way[2]};
-                next_[v] = vec3{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
-                moved_[v] = length(step);
-                if (!is_finite(next_[v])) {
-                    detail::fail<invalid_input>(errc::out_of_range, "curvature_run: the policies move vertex " + std::to_string(v) +
-                                                                        " to a place that is not finite",
-                                                {.kind = entity::vertex, .index = v});
-                }
-            }
-        });
-        bool const any = std::any_of(moved_.begin(), moved_.end(), [](double d) { return d > 0; });
-        if (!any) return false;
-        detail::edge_lengths const edges = detail::measure_edges(next_, rings_, threads);
-        if (options_.topology == mesh_topology::adapt && edges.shortest < options_.small_edge * edges.mean &&
-            thin_out(edges)) {
-            return true;
-        }
-        // Nothing below throws.
-        std::swap(surface_.positions, next_);
-        for (std::size_t v = 0; v < n; ++v) {
-            if (!(moved_[v] > 0)) continue;
-            wear_[v] += moved_[v];
-            input_of_[v] = vertex_index{};
-        }
-        mean_edge_ = edges.mean;
-        ++report_.iterations;
-        return true;
-    }
-
-    /// Finishes an iteration without the edges that have become too short; false where none can go. All or nothing.
-    [[nodiscard]] bool thin_out(detail::edge_lengths const& edges) {
+        std::vector<vec3>& next = displacement_.next();
+        std::span<double const> const moved = displacement_.moved();
+        detail::edge_lengths const edges = detail::measure_edges(next, rings_, threads);
         double const limit = options_.small_edge * edges.mean;
-        if (!detail::any_may_collapse(edges, limit, next_, surface_.triangles, rings_, held_)) return false;
-        detail::curvature_state s = snapshot();
-        s.surface.positions = next_;
-        collapse_report const gone = detail::collapse_short_edges_fn::trusted(s.surface, limit, &rings_, held_);
-        if (gone.collapsed == 0) return false;
-        std::size_t const n = s.surface.positions.size();
-        s.wear.assign(n, 0.0);
-        s.input_of.assign(n, vertex_index{});
-        if (!held_.empty()) s.held.assign(n, 0);
-        std::vector<unsigned char> merged(n, 0);
-        for (std::size_t v = 0; v < wear_.size(); ++v) {
-            std::size_t const to = gone.new_vertex[v].value;
-            s.wear[to] = std::max(s.wear[to], wear_[v] + moved_[v]);
-            s.input_of[to] = merged[to] == 0 && !(moved_[v] > 0) ? input_of_[v] : vertex_index{};
-            merged[to] = 1;
-            if (!held_.empty() && held_[v] != 0) s.held[to] = 1;
+        if (options_.topology == mesh_topology::adapt && edges.shortest < limit &&
+            thinning_(now_, rings_, next, moved, edges, limit, threads)) {
+            mean_edge_ = -1;
+        } else {  // nothing below throws
+            std::swap(now_.surface.positions, next);
+            for (std::size_t v = 0; v < moved.size(); ++v) {
+                if (!(moved[v] > 0)) continue;
+                now_.wear[v] += moved[v];
+                now_.input_of[v] = vertex_index{};
+            }
+            mean_edge_ = edges.mean;
+            ++now_.iterations;
         }
-        for (vertex_index& v : s.new_vertex) v = gone.new_vertex[v.value];
-        s.edges_collapsed += gone.collapsed;
-        ++s.iterations;
-        restore(std::move(s));
+        told_totals();
         return true;
     }
 
     /// Pairs of triangles that cut each other; none where they are not more than in the input.
     [[nodiscard]] std::vector<detail::triangle_pair> new_cuts() {
-        std::vector<detail::triangle_pair> cuts = self_intersections(surface_.positions, surface_.triangles);
+        std::vector<detail::triangle_pair> cuts = self_intersections(now_.surface.positions, now_.surface.triangles);
         if (cuts.empty()) return cuts;
         if (!cuts_at_start_) {
             std::vector<vec3> start = input_;
@@ -352,7 +276,7 @@ private:
         bool const spent = holding ? holds_ >= options_.retries - options_.hold_after : below(options_.retries);
         detail::curvature_state s = safe_;
         if (holding && !spent) {
-            s.held = detail::held_around(std::move(cuts), holds_ + 1, surface_, new_vertex_, s, *cuts_at_start_ > 0);
+            s.held = detail::held_around(std::move(cuts), holds_ + 1, now_.surface, now_.new_vertex, s, *cuts_at_start_ > 0);
             std::vector<unsigned char>(s.held).swap(safe_.held);
         }
         restore(std::move(s));
@@ -365,30 +289,25 @@ private:
     /// The sum over the closed chain about the origin of the door's frame. O(faces).
     [[nodiscard]] double volume() const noexcept {
         double six = 0;
-        auto const& p = surface_.positions;
-        for (auto const& t : surface_.triangles) six += dot(p[t[0]], cross(p[t[1]], p[t[2]]));
+        auto const& p = now_.surface.positions;
+        for (auto const& t : now_.surface.triangles) six += dot(p[t[0]], cross(p[t[1]], p[t[2]]));
         return six / 6;
     }
 
     Process process_;
     curvature_options options_;
-    triangle_surface surface_;
+    detail::curvature_state now_;
     detail::door_scale scale_;
     std::vector<vec3> input_;               ///< positions as given
     std::vector<std::array<std::uint32_t, 3>> input_triangles_;
     vertex_rings rings_{};
-    bool fresh_ = false;
-    std::vector<double> h_{};
-    std::vector<vec3> next_{};
-    std::vector<double> moved_{};
-    std::vector<vec3> normal_{};
-    std::vector<double> wear_{};
-    std::vector<vertex_index> new_vertex_{};
-    std::vector<vertex_index> input_of_{};    ///< vertex now -> that of the input it still is, or not valid
-    std::vector<unsigned char> held_{};       ///< vertex now -> whether it is held still; empty: none is
-    std::uint64_t holds_ = 0;                 ///< since the last sound search
+    bool fresh_ = false;                    ///< whether the rings are those of the surface
+    mutable estimator_room room_{};
+    detail::curvature_displacement displacement_{};
+    detail::edge_thinning thinning_{};
+    std::uint64_t holds_ = 0;               ///< since the last sound search
     curvature_report report_{};
-    double mean_edge_ = -1;  ///< of the surface now; below 0: not measured
+    double mean_edge_ = -1;                 ///< of the surface now; below 0: not measured
     double start_volume_ = 0;
     std::optional<std::size_t> cuts_at_start_{};
     std::uint64_t input_hash_ = 0;

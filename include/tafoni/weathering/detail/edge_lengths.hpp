@@ -7,7 +7,7 @@
 #include <tafoni/core/vector.hpp>
 #include <tafoni/curvature/detail/corner_sums.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
-#include <tafoni/repair/collapse_short_edges.hpp>
+#include <tafoni/repair/detail/edge_collapser.hpp>
 
 #include <algorithm>
 #include <array>
@@ -62,23 +62,25 @@ template <executor Executor>
     return all;
 }
 
-/// Whether an edge below `limit` may be collapsed, none at a vertex that `fixed`, if not empty, flags. O(vertices of the blocks that hold such edges).
-[[nodiscard]] inline bool any_may_collapse(edge_lengths const& edges, double limit, std::span<vec3 const> positions,
+/// All edges shorter than `limit`. O(vertices of the blocks that hold some).
+[[nodiscard]] inline std::vector<short_edge> edges_below(edge_lengths const& edges, double limit,
+                                                         std::span<vec3 const> positions, vertex_rings const& rings) {
+    std::vector<short_edge> found;
+    for (std::size_t b = 0; b < edges.shortest_of_block.size(); ++b) {
+        if (!(edges.shortest_of_block[b] <= limit)) continue;  // squares are compared, which may round otherwise
+        find_short_edges(positions, rings, limit * limit, b * vertex_grain, std::min((b + 1) * vertex_grain, positions.size()), found);
+    }
+    return found;
+}
+
+/// Whether one of `found` may be collapsed, none at a vertex that `fixed`, if not empty, flags.
+[[nodiscard]] inline bool any_may_collapse(std::span<short_edge const> found, std::span<vec3 const> positions,
                                            std::span<std::array<std::uint32_t, 3> const> triangles, vertex_rings const& rings,
                                            std::span<unsigned char const> fixed = {}) {
     collapse_rules rules(positions, triangles, rings);
-    std::vector<short_edge> found;
-    for (std::size_t b = 0; b < edges.shortest_of_block.size(); ++b) {
-        if (!(edges.shortest_of_block[b] < limit)) continue;
-        found.clear();
-        find_short_edges(positions, rings, limit * limit, b * vertex_grain,
-                         std::min((b + 1) * vertex_grain, positions.size()), found);
-        for (short_edge const& e : found) {
-            if (!fixed.empty() && (fixed[e.ends[0]] | fixed[e.ends[1]]) != 0) continue;
-            if (rules.target(e.ends[0], e.ends[1])) return true;
-        }
-    }
-    return false;
+    return std::any_of(found.begin(), found.end(), [&](short_edge const& e) {
+        return (fixed.empty() || (fixed[e.ends[0]] | fixed[e.ends[1]]) == 0) && rules.target(e.ends[0], e.ends[1]);
+    });
 }
 
 }  // namespace tafoni::detail
