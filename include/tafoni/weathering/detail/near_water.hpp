@@ -47,8 +47,10 @@ private:
         box3 box;
         for (vec3 const& p : points) box.include(p);
         vec3 const e = box.extent();
-        // A little longer, so that rounding loses nothing: there are at most a million along an axis.
-        double cell = 2 * (1 + 1e-6) * reach;
+        // A little longer than asked, and not lost beside the coordinates, so that rounding loses nothing.
+        double largest = 0;
+        for (int d = 0; d < 3; ++d) largest = std::max({largest, std::fabs(box.lo[d]), std::fabs(box.hi[d])});
+        double cell = std::max(2.002 * reach, 1e-11 * largest);
         auto const along = [&](int d) { return std::floor(e[d] / cell) + 3; };
         while (along(0) * along(1) * along(2) > std::max(most, 64.0) || std::max({along(0), along(1), along(2)}) > 1e6) cell *= 1.25;
         inverse_ = 1 / cell;
@@ -90,7 +92,7 @@ private:
         double const x = (p[0] - lo_[0]) * inverse_;
         double const y = (p[1] - lo_[1]) * inverse_;
         double const z = (p[2] - lo_[2]) * inverse_;
-        if (!(x >= 0.5 && y >= 0.5 && z >= 0.5 && x < top_[0] && y < top_[1] && z < top_[2])) return std::numeric_limits<double>::infinity();
+        if (!(x >= 0.4 && y >= 0.4 && z >= 0.4 && x < top_[0] && y < top_[1] && z < top_[2])) return std::numeric_limits<double>::infinity();
         auto const low = [](double a) { return static_cast<std::size_t>(static_cast<std::int64_t>(a - 0.5)); };
         std::uint32_t const* const row = begin_.data() + low(x) + size_[0] * (low(y) + size_[1] * low(z));
         std::size_t const plane = size_[0] * size_[1];
