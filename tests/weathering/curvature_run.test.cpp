@@ -12,6 +12,7 @@
 #include <bit>
 #include <limits>
 #include <map>
+#include <utility>
 
 using namespace tafoni;
 using namespace tafoni_test;
@@ -411,6 +412,30 @@ TEST_CASE("an observer stops a run after a whole iteration, and it goes on to th
         run.run(6 - static_cast<std::uint64_t>(k));
         CHECK(same_bits(run.surface(), whole.surface()));
     }
+}
+
+TEST_CASE("curvature is that of the surface at any time, asks nothing of a run and changes nothing in it") {
+    triangle_surface s = torus_surface(24, 12, 0.3).mesh;
+    for (vec3& p : s.positions) p[2] *= 0.25;
+    curvature_run run(s, curvature_weathering{}, {.small_edge = 0.35});
+    curvature_run left_alone = run;
+    for (int k = 0; k < 6; ++k) {
+        curvature_run<> const& seen = run;
+        std::vector<double> const once = seen.curvature();
+        std::vector<double> const again = seen.curvature(thread_pool(2));
+        std::vector<double> const wanted = estimate_curvature(run.surface());
+        REQUIRE(once.size() == wanted.size());
+        CHECK(once == again);
+        for (std::size_t v = 0; v < wanted.size(); ++v) REQUIRE(once[v] == Approx(wanted[v]).epsilon(1e-9).margin(1e-9));
+        run.run(1);
+        left_alone.run(1);
+        REQUIRE(run.checkpoint() == left_alone.checkpoint());
+    }
+    CHECK(run.report().edges_collapsed > 0);
+    // Where the rings are to be found anew.
+    curvature_run resumed(s, curvature_weathering{}, {.small_edge = 0.35});
+    resumed.resume(run.checkpoint());
+    CHECK(std::as_const(resumed).curvature() == run.curvature());
 }
 
 TEST_CASE("every option out of range is refused by name") {
