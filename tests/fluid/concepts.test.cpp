@@ -1,4 +1,4 @@
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
@@ -13,13 +13,6 @@ using namespace tafoni;
 using namespace tafoni_test;
 
 namespace {
-
-box3 between(vec3 const& lo, vec3 const& hi) {
-    box3 b;
-    b.lo = lo;
-    b.hi = hi;
-    return b;
-}
 
 /// Breaks what it says: the executor shows, a velocity is none, ids repeat.
 struct broken {

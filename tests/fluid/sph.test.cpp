@@ -1,4 +1,4 @@
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
@@ -14,12 +14,6 @@ using namespace tafoni_test;
 
 namespace {
 
-box3 between(vec3 const& lo, vec3 const& hi) {
-    box3 b;
-    b.lo = lo;
-    b.hi = hi;
-    return b;
-}
 box_sink everywhere() { return {.keep = between(vec3{-1e6, -1e6, -1e6}, vec3{1e6, 1e6, 1e6})}; }
 
 template <class Scalar>

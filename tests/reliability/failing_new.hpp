@@ -57,6 +57,29 @@ every_allocation fail_every_allocation(Work const& work, long stride = 1) {
     return r;
 }
 
+/// Lets memory run out in `work(state)` after 0, 1, 2 ... allocations until it gets through, each time on a new `make()`;
+/// `check(state, failed)` then looks at what is left. Returns how often memory ran out, 0 where it did for ever.
+template <class Make, class Work, class Check>
+long fail_each_allocation(Make const& make, Work const& work, Check const& check) {
+    for (long k = 0; k < 20000; ++k) {
+        auto state = make();
+        bool failed = false;
+        allocations_left = k;
+        try {
+            work(state);
+        } catch (std::bad_alloc const&) {
+            failed = true;
+        } catch (...) {
+            allocations_left = -1;
+            throw;
+        }
+        allocations_left = -1;
+        check(state, failed);
+        if (!failed) return k;
+    }
+    return 0;
+}
+
 }  // namespace tafoni_test
 
 void* operator new(std::size_t n) { return tafoni_test::allocate(n, 16); }

@@ -1,45 +1,12 @@
 #include "percolation/box_network.hpp"
+#include "reliability/failing_new.hpp"
 
 #include <tafoni/weathering/frost_run.hpp>
 
 #include <catch2/catch.hpp>
 
-#include <cstdlib>
-#include <new>
-
-namespace {
-long allocations_left = -1;  // < 0: no limit
-
-void* allocate(std::size_t n, std::size_t alignment) {
-    if (allocations_left == 0) throw std::bad_alloc();
-    if (allocations_left > 0) --allocations_left;
-    std::size_t const whole = (n + alignment - 1) / alignment * alignment;
-    if (void* const p = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return p;
-    throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t n) { return allocate(n, 16); }
-void* operator new(std::size_t n, std::align_val_t a) { return allocate(n, static_cast<std::size_t>(a)); }
-void* operator new[](std::size_t n) { return allocate(n, 16); }
-void* operator new(std::size_t n, std::nothrow_t const&) noexcept {
-    try {
-        return allocate(n, 16);
-    } catch (std::bad_alloc const&) {
-        return nullptr;
-    }
-}
-void* operator new[](std::size_t n, std::nothrow_t const&) noexcept { return operator new(n, std::nothrow); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::nothrow_t const&) noexcept { std::free(p); }
-void operator delete[](void* p, std::nothrow_t const&) noexcept { std::free(p); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-
 using namespace tafoni;
+using tafoni_test::allocations_left;
 
 TEST_CASE("C3: when memory runs out at any point, the run stays usable and ends in the same bytes") {
     tafoni_test::box_network const n(3, 3, 3);

@@ -1,5 +1,5 @@
 // What water does at the border of an open mesh.
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/core/elementary.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
@@ -27,13 +27,6 @@ struct flood {
 };
 
 template <class Height>
-triangle_surface ground(std::uint32_t n, Height const& height) {
-    return parametric(
-               n + 1, n + 1, false, false, 0,
-               [&](double u, double v) { return vec3{10 * u, 10 * v, height(10 * u, 10 * v)}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
-template <class Height>
 flood over(Height const& height) {
     flood out;
     for (int i = 0; i < 80; ++i) {
@@ -46,7 +39,7 @@ flood over(Height const& height) {
     return out;
 }
 double flat(double, double) { return 0; }
-double slope(double x, double) { return -0.6 * x; }
+double incline(double x, double) { return -0.6 * x; }
 double hills(double x, double y) { return 0.3 * elementary::sin(1.3 * x) * elementary::cos(0.9 * y) - 0.2 * x; }
 
 bool on_side(double x) { return x == 0 || x == 10; }
@@ -85,7 +78,7 @@ detail::axis_bits kept_at(triangle_surface const& s, std::size_t v) {
 }  // namespace
 
 TEST_CASE("flat open ground sinks evenly by curvature, its rim and corners too") {
-    triangle_surface const s = ground(20, flat);
+    triangle_surface const s = sheet(20, flat);
     flood close;  // above every vertex
     for (vec3 const& p : s.positions) close.at.push_back(vec3{p[0], p[1], 0.05});
     hydraulic_run wet(s, close, by_curvature);
@@ -111,7 +104,7 @@ TEST_CASE("flat open ground sinks evenly by curvature, its rim and corners too")
 
 TEST_CASE("a terrain under water keeps its outline, wears as much at its rim as behind it, and the ledger is its volume") {
     auto const worn = [](auto const& height, auto const& process, double least, double most) {
-        triangle_surface const s = ground(40, height);
+        triangle_surface const s = sheet(40, height);
         hydraulic_run run(s, over(height), process);
         sediment_ledger const l = run.run(8).ledger;
         CHECK(run.balanced());
@@ -140,15 +133,15 @@ TEST_CASE("a terrain under water keeps its outline, wears as much at its rim as 
         CHECK(rim / rims < most * inner / inners);
     };
     worn(flat, by_curvature, 0.95, 1.05);
-    worn(slope, by_curvature, 0.95, 1.05);
+    worn(incline, by_curvature, 0.95, 1.05);
     worn(hills, by_curvature, 0.95, 1.05);
     worn(flat, by_stress, 0.95, 1.05);
-    worn(slope, by_stress, 0.95, 1.05);
+    worn(incline, by_stress, 0.95, 1.05);
     worn(hills, by_stress, 0.95, 1.05);
 }
 
 TEST_CASE("edges that are split at the border keep the outline") {
-    triangle_surface const s = ground(12, hills);
+    triangle_surface const s = sheet(12, hills);
     hydraulic_run run(s, over(hills), by_stress, {.refine_length = 0.5, .refine_every = 2});
     run.run(8);
     REQUIRE(run.report().vertices_added > 100);
@@ -164,7 +157,7 @@ TEST_CASE("a border that no axis holds does not creep inwards by curvature") {
     // The hills, turned by 30 degrees.
     double const c = std::sqrt(0.75);
     auto const turned = [&](vec3 const& p) { return vec3{c * p[0] - 0.5 * p[1], 0.5 * p[0] + c * p[1], p[2]}; };
-    triangle_surface s = ground(40, hills);
+    triangle_surface s = sheet(40, hills);
     flood water = over(hills);
     for (vec3& p : s.positions) p = turned(p);
     for (vec3& p : water.at) p = turned(p);
@@ -189,15 +182,15 @@ TEST_CASE("a border that no axis holds does not creep inwards by curvature") {
 }
 
 TEST_CASE("sides, level rims and corners are held; ground that is level sinks") {
-    triangle_surface const level = ground(4, flat);
+    triangle_surface const level = sheet(4, flat);
     CHECK(kept_at(level, 0) == 3);
     CHECK(kept_at(level, 2) == 1);
     CHECK(kept_at(level, 12) == 0);
-    triangle_surface const inclined = ground(4, slope);
+    triangle_surface const inclined = sheet(4, incline);
     CHECK(kept_at(inclined, 2) == 1);
     CHECK(kept_at(inclined, 10) == 2);
     CHECK(kept_at(inclined, 0) == 3);
-    triangle_surface steep = ground(4, [](double x, double y) { return 2.5 * x + (y == 5 ? 0.1 : 0.0); });
+    triangle_surface steep = sheet(4, [](double x, double y) { return 2.5 * x + (y == 5 ? 0.1 : 0.0); });
     CHECK(kept_at(steep, 2) == 1);
     triangle_surface const pipe = cylinder(12, 4, 0).mesh;
     vertex_rings const rings(pipe.positions.size(), pipe.triangles);

@@ -1,5 +1,5 @@
 #include "reliability/failing_new.hpp"
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
@@ -13,13 +13,6 @@ using namespace tafoni_test;
 
 namespace {
 
-triangle_surface slope(std::uint32_t n, double drop) {
-    return parametric(
-               n + 1, n + 1, false, false, 0,
-               [&](double u, double v) { return vec3{10 * u, 10 * v, -drop * u}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
-box3 between(vec3 const& lo, vec3 const& hi) { return {.lo = lo, .hi = hi}; }
 /// Short of life, so that loads are lost and drops are replaced.
 rain_particles rain(std::uint32_t particles = 150, std::uint64_t seed = 3) {
     return rain_particles({.box = between(vec3{1.5, 1.5, -0.3}, vec3{3, 8.5, 0.2})}, {.keep = between(vec3{1, 1, -6}, vec3{9, 9, 5})},

@@ -1,4 +1,4 @@
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
@@ -16,18 +16,6 @@ using namespace tafoni_test;
 
 namespace {
 
-triangle_surface slope(std::uint32_t n, double drop) {
-    return parametric(
-               n + 1, n + 1, false, false, 0,
-               [&](double u, double v) { return vec3{10 * u, 10 * v, -drop * u}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
-box3 between(vec3 const& lo, vec3 const& hi) {
-    box3 b;
-    b.lo = lo;
-    b.hi = hi;
-    return b;
-}
 rain_particles rain_over(double drop) {
     return rain_particles({.box = between(vec3{1.5, 1.5, 0.5}, vec3{8, 8.5, 2})},
                           {.keep = between(vec3{1, 1, -drop - 1}, vec3{9, 9, 5})}, {.particles = 300, .radius = 0.3, .seed = 3});

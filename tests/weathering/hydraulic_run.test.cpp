@@ -1,4 +1,4 @@
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/core/thread_pool.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
@@ -6,7 +6,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <bit>
 #include <limits>
 
 using namespace tafoni;
@@ -14,12 +13,6 @@ using namespace tafoni_test;
 
 namespace {
 
-triangle_surface slope(std::uint32_t n, double drop) {
-    return parametric(
-               n + 1, n + 1, false, false, 0,
-               [&](double u, double v) { return vec3{10 * u, 10 * v, -drop * u}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
 rain_particles rain_over(double drop, double gravity = 9.81, std::uint32_t particles = 400) {
     box3 from;
     from.lo = vec3{2.5, 2.5, 0.5};
@@ -29,15 +22,6 @@ rain_particles rain_over(double drop, double gravity = 9.81, std::uint32_t parti
     keep.hi = vec3{7.8, 7.8, 5};
     return rain_particles({.box = from}, {.keep = keep},
                           {.particles = particles, .radius = 0.3, .gravity = vec3{0, 0, -gravity}, .seed = 3});
-}
-bool same_bits(triangle_surface const& a, triangle_surface const& b) {
-    return a.triangles == b.triangles &&
-           std::equal(a.positions.begin(), a.positions.end(), b.positions.begin(), b.positions.end(), [](vec3 const& p, vec3 const& q) {
-               for (int d = 0; d < 3; ++d) {
-                   if (std::bit_cast<std::uint64_t>(p[d]) != std::bit_cast<std::uint64_t>(q[d])) return false;
-               }
-               return true;
-           });
 }
 
 /// The fluid that the concept asks for, and no more: particles that stand still on the ground.

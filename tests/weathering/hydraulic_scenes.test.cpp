@@ -1,5 +1,5 @@
-#include "support/curved_surfaces.hpp"
 #include "support/test_data.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
@@ -24,12 +24,6 @@ using namespace tafoni_test;
 
 namespace {
 
-box3 between(vec3 const& lo, vec3 const& hi) {
-    box3 b;
-    b.lo = lo;
-    b.hi = hi;
-    return b;
-}
 triangle_surface heights(std::uint32_t n, double size, auto const& height) {
     return parametric(
                n + 1, n + 1, false, false, 0,

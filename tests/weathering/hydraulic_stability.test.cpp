@@ -1,5 +1,5 @@
 // However fast the rock is taken, the surface stays one that water can run over.
-#include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/core/elementary.hpp>
 #include <tafoni/core/random.hpp>
@@ -59,14 +59,8 @@ struct shape {
     box3 keep{};
     vec3 velocity{0, 0, 0};
 };
-box3 between(vec3 const& lo, vec3 const& hi) { return {.lo = lo, .hi = hi}; }
 
-triangle_surface heights(std::uint32_t n, auto const& height) {
-    return parametric(
-               n + 1, n + 1, false, false, 0.2,
-               [&](double u, double v) { return vec3{10 * u, 10 * v, height(10 * u, 10 * v)}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
+triangle_surface heights(std::uint32_t n, auto const& height) { return sheet(n, height, 0.2); }
 std::vector<shape> shapes() {
     std::vector<shape> all;
     triangle_surface ball = sphere(3).mesh;
@@ -222,36 +216,6 @@ TEST_CASE("what a place cannot give in an iteration is not taken, so nothing goe
 }
 
 namespace {
-/// A closed slab, thinner than an edge, of wavy sides; water stands at both of them.
-triangle_surface slab(std::uint32_t n, double thick) {
-    triangle_surface s;
-    std::uint32_t const row = n + 1;
-    for (std::uint32_t side = 0; side < 2; ++side) {
-        for (std::uint32_t y = 0; y < row; ++y) {
-            for (std::uint32_t x = 0; x < row; ++x) {
-                s.positions.push_back(vec3{0.25 * x, 0.25 * y + 0.03 * ((x * 7 + y * 5 + side) % 4), side == 0 ? thick : 0.01 * ((x + y) % 2)});
-            }
-        }
-    }
-    auto const at = [&](std::uint32_t side, std::uint32_t x, std::uint32_t y) { return side * row * row + y * row + x; };
-    auto const quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-        s.triangles.push_back({a, b, c});
-        s.triangles.push_back({a, c, d});
-    };
-    for (std::uint32_t y = 0; y < n; ++y) {
-        for (std::uint32_t x = 0; x < n; ++x) {
-            quad(at(0, x, y), at(0, x + 1, y), at(0, x + 1, y + 1), at(0, x, y + 1));
-            quad(at(1, x, y), at(1, x, y + 1), at(1, x + 1, y + 1), at(1, x + 1, y));
-        }
-    }
-    for (std::uint32_t k = 0; k < n; ++k) {
-        quad(at(1, k, 0), at(1, k + 1, 0), at(0, k + 1, 0), at(0, k, 0));
-        quad(at(0, k, n), at(0, k + 1, n), at(1, k + 1, n), at(1, k, n));
-        quad(at(0, 0, k), at(0, 0, k + 1), at(1, 0, k + 1), at(1, 0, k));
-        quad(at(1, n, k), at(1, n, k + 1), at(0, n, k + 1), at(0, n, k));
-    }
-    return s;
-}
 /// Water that stays at both sides of the middle of the slab, however far these recede.
 struct gripping {
     std::vector<vec3> at{};
