@@ -37,8 +37,9 @@ struct fluid_particle {
 ///
 /// rho_i = sum m W(x_i - x_j), the particle itself included; p = c^2 max(rho - rho_0, 0); accelerations
 /// -sum m (p_i / rho_i^2 + p_j / rho_j^2 + viscosity) grad W, walls by k_s d - k_d (v . n) along the normal with
-/// d = reach - distance [thesis, equation 8.1 with the erratum]; velocities first, then positions. The step is courant
-/// times the least of h / (c + v), sqrt(h / a) / 2, h^2 / (12 nu), 1 / sqrt(k_s) and 1 / k_d, at most `largest_step`.
+/// d = reach - distance [thesis, equation 8.1 with the erratum], and by -friction v; velocities first, then positions. The
+/// step is courant times the least of h / (c + v), sqrt(h / a) / 2, h^2 / (12 nu), 1 / sqrt(k_s), 1 / k_d and
+/// 1 / friction, at most `largest_step`.
 /// An emitter puts a particle on each place of its lattice that is free as long as there may be more; the sink takes
 /// away what leaves its box. The sums over neighbours run by cell and id in fixed lanes: the state depends on
 /// particles and ids only, not on threads, instruction set or the order in which particles were given.
@@ -306,10 +307,13 @@ private:
                 double const far = length(in);
                 if (far > 0) a += options_.toward / far * in;
             }
+            bool touches = false;
             for_each_facing_contact(walls, p, reach_, [&](boundary_contact const& c) {
                 double const f = stiffness_ * (reach_ - c.distance) - damping_ * dot(v, c.normal);
                 a += f * c.normal;
+                touches = true;
             });
+            if (touches && options_.friction > 0) a -= options_.friction * v;
             double fast = 0;
             double pushed = 0;
             for (std::size_t d = 0; d < 3; ++d) {
@@ -332,6 +336,7 @@ private:
         least = std::min(least, 0.5 * std::sqrt(1 / std::sqrt(e.acceleration)));
         least = std::min(least, h_ * h_ / (12 * viscosity_));
         least = std::min({least, 1 / std::sqrt(stiffness_), 1 / damping_});
+        if (options_.friction > 0) least = std::min(least, 1 / options_.friction);
         double const dt = std::min(options_.courant * least, options_.largest_step);
         if (!e.finite || !(dt > 0)) {
             detail::fail<invalid_input>(errc::out_of_range, "sph: velocities or accelerations are beyond the numbers of the scalar",

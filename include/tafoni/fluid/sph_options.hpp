@@ -23,6 +23,9 @@ struct sph_options {
     double reach = 0;                 ///< at which a particle touches a wall, length unit; 0 = spacing
     double wall_stiffness = 0;        ///< k_s, acceleration per length of penetration, 1/s^2; 0 = (c / (5 reach))^2
     double wall_damping = 0;          ///< k_d, acceleration per velocity, 1/s; 0 = c / (5 reach)
+    double friction = 0;              ///< share of its velocity that a particle at a wall loses per second, 1/s, in [0, 1e6].
+                                      ///< 0 = smooth: streams on slopes grow ever faster and leap; sqrt(g / spacing) / 4
+                                      ///< makes one on a slope run at a Froude number of 4 sin(slope)
     vec3 gravity{0, 0, -9.81};        ///< length unit / s^2
     vec3 centre{0, 0, 0};             ///< that `toward` pulls to
     double toward = 0;                ///< acceleration towards the centre, the same at every distance, length unit / s^2
@@ -37,6 +40,7 @@ struct sph_options {
         out.add(gravity);
         out.add(centre);
         for (double const v : {toward, courant, largest_step, frame}) out.add(v);
+        if (friction > 0) out.add(friction);  // without, saves are those of versions that had none
     }
 
     /// \throws invalid_input  `bad_parameter`.
@@ -51,6 +55,7 @@ struct sph_options {
         detail::require_range("sph_options.reach", reach, 0, 1e100);
         detail::require_range("sph_options.wall_stiffness", wall_stiffness, 0, 1e100);
         detail::require_range("sph_options.wall_damping", wall_damping, 0, 1e100);
+        detail::require_range("sph_options.friction", friction, 0, 1e6);
         for (int d = 0; d < 3; ++d) detail::require_range("sph_options.gravity", gravity[d], -1e100, 1e100);
         for (int d = 0; d < 3; ++d) detail::require_range("sph_options.centre", centre[d], -1e100, 1e100);
         detail::require_range("sph_options.toward", toward, -1e100, 1e100);
