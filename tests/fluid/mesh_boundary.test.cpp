@@ -41,7 +41,199 @@ std::vector<boundary_contact> brute_force(triangle_surface const& s, vec3 const&
     return over;
 }
 
+/// The same with the arithmetic of the walls, so that every bit can be asked for.
+std::vector<boundary_contact> to_the_bit(triangle_surface const& s, vec3 const& p, double radius) {
+    std::vector<boundary_contact> out;
+    double best = radius * radius;
+    boundary_contact nearest{.face = face_index::none};
+    for (std::uint32_t f = 0; f < s.triangles.size(); ++f) {
+        auto const& t = s.triangles[f];
+        vec3 const& a = s.positions[t[0]];
+        vec3 const u{s.positions[t[1]] - a};
+        vec3 const v{s.positions[t[2]] - a};
+        vec3 const w{p - a};
+        vec3 const n = cross(u, v);
+        double const nn = dot(n, n);
+        double const over = dot(w, n);
+        double const y = dot(cross(w, v), n);
+        double const z = dot(cross(u, w), n);
+        double const l = std::sqrt(nn);
+        if (nn > 0 && over * over <= radius * radius * nn && y >= 0 && z >= 0 && y + z <= nn) {
+            out.push_back({.face = f, .normal = vec3{n[0] / l, n[1] / l, n[2] / l}, .distance = over / l});
+        }
+        vec3 const away{p - tafoni::detail::nearest_on_triangle(a, s.positions[t[1]], s.positions[t[2]], p)};
+        double const square = squared_length(away);
+        if (square < best) {
+            best = square;
+            double const way = std::sqrt(square);
+            double const k = over < 0 ? -1 / way : 1 / way;
+            nearest = {.face = f, .normal = vec3{k * away[0], k * away[1], k * away[2]}, .distance = over < 0 ? -way : way};
+        }
+    }
+    if (out.empty() && nearest.face != face_index::none && best > 0) out.push_back(nearest);
+    return out;
+}
+
+/// Number of places that touch.
+std::size_t check(mesh_boundary const& walls, triangle_surface const& s, std::vector<vec3> const& places, double radius) {
+    std::size_t touching = 0;
+    std::size_t wrong = 0;
+    for (vec3 const& p : places) {
+        auto const expected = to_the_bit(s, p, radius);
+        std::vector<boundary_contact> found;
+        walls.for_each_contact(p, radius, [&](boundary_contact const& c) { found.push_back(c); });
+        touching += expected.empty() ? 0U : 1U;
+        bool same = found.size() == expected.size() && (expected.empty() || walls.block_of(p) != 0);
+        for (std::size_t i = 0; same && i < found.size(); ++i) {
+            same = found[i].face == expected[i].face && found[i].normal == expected[i].normal && found[i].distance == expected[i].distance;
+        }
+        wrong += same ? 0U : 1U;
+    }
+    CHECK(wrong == 0);
+    return touching;
+}
+
+vec3 within(stream& random, double size) {
+    double const x = random.uniform(-size, size);
+    double const y = random.uniform(-size, size);
+    double const z = random.uniform(-size, size);
+    return vec3{x, y, z};
+}
+
+/// Faces of all sizes in every direction.
+triangle_surface soup(std::size_t n, double size, std::uint64_t seed) {
+    triangle_surface s;
+    stream random(seed, 0, 0);
+    for (std::uint32_t f = 0; f < n; ++f) {
+        vec3 const a = within(random, size);
+        double const edge = size * (f % 7 == 0 ? 0.9 : f % 3 == 0 ? 0.01 : 0.15);
+        for (int k = 0; k < 3; ++k) s.positions.push_back(a + within(random, edge));
+        if (f % 11 == 0) s.positions.back() = s.positions[s.positions.size() - 2] + 1e-7 * within(random, edge);  // a needle
+        if (f % 13 == 0) s.positions.back() = s.positions[s.positions.size() - 3];                                // a line
+        s.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+    }
+    return s;
+}
+
+triangle_surface flat_ground(std::uint32_t n) {
+    triangle_surface s;
+    for (std::uint32_t j = 0; j < n; ++j) {
+        for (std::uint32_t i = 0; i < n; ++i) s.positions.push_back(vec3{1.0 * i, 1.0 * j, 0});
+    }
+    for (std::uint32_t j = 0; j + 1 < n; ++j) {
+        for (std::uint32_t i = 0; i + 1 < n; ++i) {
+            std::uint32_t const a = i + n * j;
+            s.triangles.push_back({a, a + 1, a + n + 1});
+            s.triangles.push_back({a, a + n + 1, a + n});
+        }
+    }
+    return s;
+}
+
 }  // namespace
+
+TEST_CASE("contacts are equal to the bit to those of every face looked at, while faces wander and of all radii") {
+    for (std::uint64_t const seed : {1U, 2U, 3U}) {
+        for (double const reach : {0.02, 0.1, 0.4, 20.0}) {
+            triangle_surface s = seed == 3 ? torus_surface(24, 14, 0.3).mesh : soup(120, 1, seed);
+            mesh_boundary walls(s.positions, s.triangles, reach);
+            stream random(seed, 1, 0);
+            std::size_t touching = 0;
+            // In steps below the slack, so that cells are those of the start for a while.
+            for (int step = 0; step < 5; ++step) {
+                std::vector<vec3> places;
+                for (int k = 0; k < 60; ++k) {
+                    vec3 p = within(random, 1.4);
+                    std::size_t const at = random.index_below(s.positions.size());
+                    if (k % 2 == 0) p = s.positions[at] + within(random, 0.8 * std::min(reach, 0.5));
+                    places.push_back(p);
+                }
+                touching += check(walls, s, places, reach);
+                check(walls, s, places, 0.6 * reach);
+                for (vec3& p : s.positions) p += within(random, 0.06 * std::min(reach, 0.5));
+                walls.refit(s.positions, s.triangles);
+            }
+            CHECK(touching > 20);
+        }
+    }
+}
+
+TEST_CASE("particles at the reach itself, over edges and corners, and on the borders of cells find what they touch") {
+    triangle_surface const s = flat_ground(9);
+    for (double const reach : {0.5, 0.375}) {
+        mesh_boundary const walls(s.positions, s.triangles, reach);
+        std::vector<vec3> places;
+        for (double const z : {reach, std::nextafter(reach, 0.0), std::nextafter(reach, 9.0), -reach, 0.0, 0.25 * reach}) {
+            for (double const x : {-reach, std::nextafter(-reach, -9.0), 0.0, 0.25, 3.0, std::nextafter(4.0, 0.0), 8.0, 8 + reach, std::nextafter(8 + reach, 99.0)}) {
+                for (double const y : {-0.25 * reach, 0.0, 1.5, 3.0, 7.75, 8.0}) places.push_back(vec3{x, y, z});
+            }
+        }
+        CHECK(check(walls, s, places, reach) > 100);
+        // The cells are the mean edge or four reaches long, from a rim around the faces on.
+        double const edge = s.mean_edge_length();
+        double const cell = std::max(4 * reach, edge);
+        double const lo = -(reach + 0.25 * std::max(reach, edge));
+        places.clear();
+        for (int i = 0; i < 24; ++i) {
+            double const x = lo + 0.25 * cell * i;
+            for (double const q : {x, std::nextafter(x, -99.0), std::nextafter(x, 99.0)}) {
+                for (int k = 0; k < 7; ++k) {
+                    places.push_back(vec3{q, 4.2, lo + 0.25 * cell * k});
+                    places.push_back(vec3{q, q, 0.9 * reach});
+                }
+            }
+        }
+        CHECK(check(walls, s, places, reach) > 100);
+    }
+}
+
+TEST_CASE("faces that have gone almost as far as their cells allow still meet what is at their corners and at the reach") {
+    triangle_surface const start = flat_ground(7);
+    for (double const reach : {0.5, 0.125, 2.0}) {
+        double const far = 0.24 * std::max(reach, start.mean_edge_length());
+        for (vec3 const& way : {vec3{0, 0, 1}, vec3{0, 0, -1}, vec3{1, 0, 0}, vec3{-0.7, 0.7, 0}, vec3{0, -1, 0}, vec3{0.57, 0.57, 0.57}}) {
+            triangle_surface s = start;
+            mesh_boundary walls(s.positions, s.triangles, reach);
+            for (vec3& p : s.positions) p += far * way;
+            walls.refit(s.positions, s.triangles);
+            std::vector<vec3> places;
+            for (auto const& t : s.triangles) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    vec3 const in = 0.998 * s.positions[t[k]] + 0.001 * s.positions[t[(k + 1) % 3]] + 0.001 * s.positions[t[(k + 2) % 3]];
+                    vec3 const out = 2 * s.positions[t[k]] - in;
+                    for (double const z : {0.999, -0.999}) places.push_back(vec3{in[0], in[1], in[2] + z * reach});
+                    // Beside the corner, over nothing where that is on the border.
+                    for (vec3 const& side : {vec3{1, 0, 0}, vec3{-1, 0, 0}, vec3{0, 1, 0}, vec3{0, -1, 0}}) places.push_back(out + 0.99 * reach * side);
+                }
+            }
+            CHECK(check(walls, s, places, reach) > 400);
+        }
+    }
+}
+
+TEST_CASE("crowds in one place, single particles, and models of any size and far away find what they touch") {
+    stream random(31, 0, 0);
+    triangle_surface const start = torus_surface(20, 12, 0.2).mesh;
+    for (double const size : {1e-30, 1e-9, 1.0, 1e9, 1e30}) {
+        for (double const far : {0.0, 1.0, 1e3}) {
+            triangle_surface s = start;
+            vec3 const at{far * size, -far * size, 0.3 * far * size};
+            for (vec3& p : s.positions) p = vec3{at + size * p};
+            double const reach = 0.1 * size;
+            mesh_boundary const walls(s.positions, s.triangles, reach);
+            std::vector<vec3> places;
+            for (int k = 0; k < 40; ++k) places.push_back(vec3{at + within(random, 1.5 * size)});
+            for (int k = 0; k < 40; ++k) places.push_back(s.positions[7] + within(random, 0.2 * size));
+            for (int k = 0; k < 20; ++k) places.push_back(s.positions[9]);
+            CHECK(check(walls, s, places, reach) > 30);
+        }
+    }
+    // A reach beyond the model: one cell, all faces in it.
+    mesh_boundary const one(start.positions, start.triangles, 30);
+    std::vector<vec3> places;
+    for (int k = 0; k < 60; ++k) places.push_back(within(random, 25));
+    CHECK(check(one, start, places, 30) > 40);
+}
 
 TEST_CASE("contacts are those that looking at every face finds") {
     triangle_surface const s = torus_surface(40, 24, 0.3).mesh;
