@@ -363,3 +363,30 @@ TEST_CASE("the least fluid erodes") {
     CHECK(run.run(20).ledger.eroded > 0);
     CHECK(run.balanced());
 }
+
+TEST_CASE("models too large or too small to be touched are refused by vertex or reach before anything wears") {
+    sliding water{.at = {vec3{0, 0, 0}}, .speed = vec3{1, 0, 0}};
+    triangle_surface vast = slope(4, 1);
+    vast.positions[7][1] = -1e60;
+    hydraulic_run run(vast, water, curvature_erosion<>{});
+    CHECK_THROWS_WITH(run.run(1), Catch::Contains("vertex 7") && Catch::Contains("1e50"));
+    CHECK(run.report().iterations == 0);
+    CHECK(run.surface().positions == vast.positions);
+    triangle_surface const s = slope(4, 1);
+    for (double const reach : {0.0, 1e-60, 1e60, std::numeric_limits<double>::quiet_NaN()}) {
+        CHECK_THROWS_WITH(mesh_boundary(s.positions, s.triangles, reach), Catch::Contains("reach"));
+    }
+    // What is within touches as ever.
+    for (double const unit : {1e-45, 1e45}) {
+        triangle_surface scaled = s;
+        for (vec3& p : scaled.positions) p *= unit;
+        mesh_boundary const walls(scaled.positions, scaled.triangles, 0.3 * unit);
+        int met = 0;
+        vec3 const over{5.1 * unit, 5.2 * unit, -0.4 * unit};
+        walls.for_each_contact(over, 0.3 * unit, [&](boundary_contact const& c) {
+            ++met;
+            CHECK(c.distance == Approx(0.11 * unit / std::sqrt(1.01)).margin(0));
+        });
+        CHECK(met == 1);
+    }
+}

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tafoni {
@@ -33,12 +34,22 @@ namespace tafoni {
 /// the cells stay. Answers depend on the mesh alone, never on when the cells were filled.
 class mesh_boundary {
 public:
-    /// O(faces + cells). \throws invalid_input  `bad_parameter` for a reach that is not positive and finite,
-    /// `size_overflow` beyond 32 bits. Positions must be finite and corners in range.
+    /// O(vertices + faces + cells). \throws invalid_input  `bad_parameter` for a reach out of [1e-50, 1e50], `out_of_range` for a
+    /// vertex of a coordinate beyond 1e50 or that is none: products of six lengths must be numbers; `size_overflow` beyond
+    /// 32 bits. Corners must be in range.
     mesh_boundary(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles, double reach)
         : reach_(reach) {
-        detail::require_range("mesh_boundary: reach", reach, std::numeric_limits<double>::min(), 1e100);
+        detail::require_range("mesh_boundary: reach", reach, 1e-50, 1e50);
         detail::require_indexable("mesh_boundary: faces", triangles.size());
+        for (std::size_t v = 0; v < positions.size(); ++v) {
+            for (int d = 0; d < 3; ++d) {
+                if (std::fabs(positions[v][d]) <= 1e50) continue;
+                detail::fail<invalid_input>(errc::out_of_range,
+                                            "mesh_boundary: vertex " + std::to_string(v) + " has a coordinate of " +
+                                                detail::number_text(positions[v][d]) + ", beyond 1e50: choose a larger unit",
+                                            {.kind = entity::vertex, .index = v, .value = positions[v][d], .limit = 1e50});
+            }
+        }
         positions_ = positions;
         triangles_ = triangles;
         fill();
