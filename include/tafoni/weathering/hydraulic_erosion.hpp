@@ -82,6 +82,12 @@ static_assert(exchange_rule<partheniades_erosion>);
 
 /// Erosion of every vertex near the water by its curvature, scaled into [0, 1], so that ridges go fastest and hollows
 /// slowest [Skorkovská's thesis, section 9.4].
+///
+/// The range of curvature that is scaled is no less than a turn of the normals by 0.01 per mean edge, about its middle: what
+/// lies below one ring cannot tell, so a plane and a ball wear evenly, by half of the most. Directions blend from
+/// the inward normal where H is 0 to the Laplacian by |H| over the larger of |H_min| and |H_max| (at least half of that
+/// turn), where the thesis reaches the Laplacian at H_min and at H_max each: on ridges over flat ground H_min is next to
+/// 0, and the Laplacian of the flat ground rounding.
 template <curvature_estimator Estimator = tensor_fit>
 struct curvature_erosion {
     [[no_unique_address]] Estimator estimator{};

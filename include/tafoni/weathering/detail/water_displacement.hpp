@@ -26,7 +26,7 @@
 
 namespace tafoni::detail {
 
-/// Equations 9.4 to 9.7 of Skorkovská's thesis; keeps its memory from use to use.
+/// Equations 9.4 to 9.7 of Skorkovská's thesis, as `curvature_erosion` says; keeps its memory from use to use.
 class water_displacement {
 public:
     /// Puts into `next` where the vertices go that are within the influence of the water that touches, on its side of the
@@ -56,18 +56,24 @@ public:
             low = std::min(low, h);
             high = std::max(high, h);
         }
-        // Of one curvature everywhere: halfway between ridge and hollow.
-        double const width = high > low ? 1 / (high - low) : 0.0;
-        double const largest = std::max(std::fabs(low), std::fabs(high));
+        // What a ring cannot resolve is one curvature, halfway between ridge and hollow: the range of equation 9.4 has a
+        // floor, or rounding would make ridges and hollows of a plane.
+        double const least = least_turn / mean_edge;
+        bool const bent = high - low >= least;
+        double const width = 1 / (bent ? high - low : least);
+        double const middle = 0.5 * low + 0.5 * high;
+        // Over the larger of both, where the thesis blends fully at H_min and at H_max: a flat place among ridges has the
+        // lowest curvature there is, and its Laplacian is rounding.
+        double const largest = std::max({std::fabs(low), std::fabs(high), 0.5 * least});
         next.assign(surface.positions.begin(), surface.positions.end());
         threads.for_blocks(n, vertex_grain, [&](std::size_t begin, std::size_t end) {
             std::vector<std::uint32_t> along;
             for (std::size_t v = begin; v < end; ++v) {
                 if (!(square_[v] <= influence * influence)) continue;
-                double const share = width > 0 ? (mean_[v] - low) * width : 0.5;
+                double const share = bent ? (mean_[v] - low) * width : 0.5 + (mean_[v] - middle) * width;
                 double const nearness = (influence - std::sqrt(square_[v])) / influence;
                 vec3 const p = surface.positions[v];
-                double const curvature = largest > 0 ? mean_[v] / largest : 0.0;
+                double const curvature = mean_[v] / largest;
                 vec3 way = surface.rings->is_border(v)
                                ? direction(surface, detail::neighbors_along_border(*surface.rings, surface.triangles, v, along), v, curvature)
                                : direction(surface, surface.rings->neighbors(v), v, curvature);
@@ -85,6 +91,8 @@ public:
     }
 
 private:
+    static constexpr double least_turn = 0.01;  ///< of the normals, radians per mean edge
+
     /// Equation 9.7 with the erratum: inward normal and unit Laplacian, without what would lead outwards. `around`: at a
     /// border the neighbours along it, else all, so that a border does not creep inwards.
     [[nodiscard]] vec3 direction(surface_view const& surface, std::span<std::uint32_t const> around, std::size_t v, double curvature) const {
