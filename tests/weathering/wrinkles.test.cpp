@@ -1,4 +1,5 @@
 #include "support/curved_surfaces.hpp"
+#include "support/flat_sheet.hpp"
 #include "support/test_data.hpp"
 
 #include <tafoni/core/thread_pool.hpp>
@@ -20,17 +21,8 @@ using namespace tafoni_test;
 
 namespace {
 
-/// A sheet [0, 1]^2 of n x n squares at z = 0.
-triangle_surface sheet(std::uint32_t n, double size = 1) {
-    return parametric(
-               n + 1, n + 1, false, false, 0,
-               [&](double u, double v) { return vec3{size * u, size * v, 0}; }, [](double, double) { return 0.0; })
-        .mesh;
-}
-vertex_index at(std::uint32_t n, std::uint32_t i, std::uint32_t j) { return vertex_index{i * (n + 1) + j}; }
-
 std::vector<wrinkle> across(std::uint32_t n, double r, wrinkle_profile p = wrinkle_profile::fold, double strength = 1) {
-    return {{.controls = {at(n, n / 4, n / 2), at(n, 3 * n / 4, n / 2)}, .radius = r, .strength = strength, .profile = p}};
+    return {{.controls = {sheet_vertex(n, n / 4, n / 2), sheet_vertex(n, 3 * n / 4, n / 2)}, .radius = r, .strength = strength, .profile = p}};
 }
 
 double distance_to_path(triangle_surface const& s, std::vector<vertex_index> const& path, vec3 const& p) {
@@ -47,143 +39,11 @@ double bell(double t) { return std::exp(-4.5 * t * t) * 3 / std::sqrt(tau); }
 
 }  // namespace
 
-TEST_CASE("a path leads along the plane, edge by edge, through every control") {
-    std::uint32_t const n = 20;
-    triangle_surface const s = sheet(n);
-    std::vector<vertex_index> const controls{at(n, 2, 3), at(n, 15, 3), at(n, 15, 17)};
-    auto const path = find_wrinkle_path(s, controls);
-    vertex_rings const rings(s.positions.size(), s.triangles);
-    REQUIRE(path.front() == controls.front());
-    REQUIRE(path.back() == controls.back());
-    CHECK(std::count(path.begin(), path.end(), controls[1]) == 1);
-    for (std::size_t k = 1; k < path.size(); ++k) {
-        auto const around = rings.neighbors(path[k - 1].value);
-        CHECK(std::binary_search(around.begin(), around.end(), path[k].value));
-    }
-    CHECK(path.size() == 13 + 14 + 1);  // straight along the grid
-}
-
-TEST_CASE("a path finds its way around a hole") {
-    std::uint32_t const n = 12;
-    triangle_surface s = sheet(n);
-    std::erase_if(s.triangles, [&](auto const& t) {
-        double x = 0;
-        double y = 0;
-        for (auto const c : t) {
-            x += s.positions[c][0] / 3;
-            y += s.positions[c][1] / 3;
-        }
-        return x > 0.4 && x < 0.6 && y > 0.1 && y < 0.9;
-    });
-    // Edges of many lengths, but for the straight row.
-    stream random(3, stage::user, 0);
-    for (std::size_t v = 0; v < s.positions.size(); ++v) {
-        double const x = random.uniform(-0.03, 0.03);
-        double const y = random.uniform(-0.03, 0.03);
-        if (v % (n + 1) != 6) s.positions[v] += vec3{x, y, 0};
-    }
-    auto const path = find_wrinkle_path(s, std::vector<vertex_index>{at(n, 1, 6), at(n, 11, 6)});
-    CHECK(path.size() > 11);
-    CHECK(path.back() == at(n, 11, 6));
-    // From the rim on it is as short as edges allow, by relaxation until nothing changes.
-    std::vector<double> way(s.positions.size(), 1e9);
-    way[at(n, 11, 6).value] = 0;
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (auto const& t : s.triangles) {
-            for (std::size_t k = 0; k < 6; ++k) {
-                std::uint32_t const a = t[k % 3];
-                std::uint32_t const b = t[(k + 1 + k / 3) % 3];
-                double const d = way[b] + length(vec3{s.positions[a] - s.positions[b]});
-                if (d < way[a] - 1e-12) {
-                    way[a] = d;
-                    changed = true;
-                }
-            }
-        }
-    }
-    double left = 0;
-    for (std::size_t k = 5; k < path.size(); ++k) left += length(vec3{s.positions[path[k].value] - s.positions[path[k - 1].value]});
-    CHECK(path[4] == at(n, 5, 6));
-    CHECK(left == Approx(way[path[4].value]));
-    s.triangles.clear();
-    CHECK_THROWS_AS(find_wrinkle_path(s, std::vector<vertex_index>{at(n, 1, 6), at(n, 11, 6)}), bad_topology);
-}
-
-TEST_CASE("a path keeps to the plane through its ends and their mean normal") {
-    triangle_surface const s = sphere(5).mesh;
-    auto const nearest = [&](vec3 const& p) {
-        std::size_t best = 0;
-        for (std::size_t v = 0; v < s.positions.size(); ++v) {
-            if (length(vec3{s.positions[v] - p}) < length(vec3{s.positions[best] - p})) best = v;
-        }
-        return vertex_index{best};
-    };
-    double const edge = s.mean_edge_length();
-    auto const a = nearest(normalized(vec3{1, 0.2, 0.4}));
-    auto const b = nearest(normalized(vec3{-0.1, 1, -0.2}));
-    auto const path = find_wrinkle_path(s, std::vector<vertex_index>{a, b});
-    // On a sphere that is the great circle, which is as short as can be.
-    vec3 const across = normalized(cross(s.positions[a.value], s.positions[b.value]));
-    for (vertex_index const v : path) CHECK(std::fabs(dot(s.positions[v.value], across)) < edge);
-    double const angle = std::acos(dot(s.positions[a.value], s.positions[b.value]));
-    CHECK(static_cast<double>(path.size() - 1) * edge < 1.4 * angle);
-    auto const back = find_wrinkle_path(s, std::vector<vertex_index>{b, a});
-    CHECK(back.front() == b);
-    CHECK(back.back() == a);
-}
-
-TEST_CASE("the plane leans to both ends alike") {
-    triangle_surface const s = cylinder(200, 120, 0).mesh;
-    auto const vertex = [](std::uint32_t i, std::uint32_t j) { return vertex_index{i * 120 + j}; };
-    vertex_index const a = vertex(0, 5);
-    vertex_index const b = vertex(50, 110);
-    vec3 const p = s.positions[a.value];
-    vec3 const q = s.positions[b.value];
-    auto const farthest = [&](std::vector<vertex_index> const& path, vec3 const& n) {
-        vec3 const across = normalized(cross(vec3{q - p}, n));
-        double most = 0;
-        for (vertex_index const v : path) most = std::max(most, std::fabs(dot(vec3{s.positions[v.value] - p}, across)));
-        return most;
-    };
-    vec3 const outwards{p[0], p[1], 0};
-    vec3 const there{q[0], q[1], 0};
-    double const edge = s.mean_edge_length();
-    for (auto const& ends : {std::vector<vertex_index>{a, b}, {b, a}}) {
-        auto const path = find_wrinkle_path(s, ends);
-        CHECK(farthest(path, vec3{outwards + there}) < edge);
-        CHECK(farthest(path, outwards) > 3 * edge);
-        CHECK(farthest(path, there) > 3 * edge);
-    }
-}
-
-TEST_CASE("where normals lay no plane a path still runs straight") {
-    triangle_surface const s = sphere(4).mesh;
-    double const edge = s.mean_edge_length();
-    // Opposite vertices: their normals cancel.
-    for (std::size_t from : {0U, 3U, 77U, 900U}) {
-        vec3 const p = s.positions[from];
-        auto const to = static_cast<std::size_t>(std::find_if(s.positions.begin(), s.positions.end(), [&](vec3 const& q) { return length(vec3{q + p}) < 1e-6; }) - s.positions.begin());
-        REQUIRE(to < s.positions.size());
-        auto const path = find_wrinkle_path(s, std::vector<vertex_index>{vertex_index{from}, vertex_index{to}});
-        CHECK(path.back() == vertex_index{to});
-        CHECK(static_cast<double>(path.size() - 1) * edge < 1.4 * tau / 2);
-    }
-    // A ribbon of no width at both ends, where no face has a normal.
-    triangle_surface thin = sheet(10);
-    for (std::uint32_t j = 0; j <= 10; ++j) {
-        for (std::uint32_t const i : {1U, 2U, 3U, 7U, 8U, 9U}) thin.positions[at(10, i, j).value][1] = 0.5;
-    }
-    auto const path = find_wrinkle_path(thin, std::vector<vertex_index>{at(10, 2, 5), at(10, 8, 5)});
-    CHECK(path.back() == at(10, 8, 5));
-    CHECK(path.size() == 7);
-}
-
 TEST_CASE("distances are those to the whole path, also where it turns back") {
     std::uint32_t const n = 40;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     vertex_rings const rings(s.positions.size(), s.triangles);
-    std::vector<vertex_index> const controls{at(n, 5, 10), at(n, 30, 10), at(n, 30, 13), at(n, 5, 14), at(n, 20, 30)};
+    std::vector<vertex_index> const controls{sheet_vertex(n, 5, 10), sheet_vertex(n, 30, 10), sheet_vertex(n, 30, 13), sheet_vertex(n, 5, 14), sheet_vertex(n, 20, 30)};
     auto const path = find_wrinkle_path(s, controls);
     double const r = 0.09;
     auto const reach = detail::reach_of_path(s, rings, path, r);
@@ -199,7 +59,7 @@ TEST_CASE("distances are those to the whole path, also where it turns back") {
 
 TEST_CASE("a fold leaves its line and swells beside it as the equations say") {
     std::uint32_t const n = 32;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     double const r = 0.15;
     wrinkle_pattern const pattern(s, across(n, r));
     triangle_surface const worn = pattern.wear(s.positions);
@@ -218,7 +78,7 @@ TEST_CASE("a fold leaves its line and swells beside it as the equations say") {
 
 TEST_CASE("subdivision is local: twice along the line, once around, none elsewhere") {
     std::uint32_t const n = 32;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     wrinkle_pattern const fine(s, across(n, 0.15));
     wrinkle_pattern const once(s, across(n, 0.15), {}, {.subdivisions = 1});
     wrinkle_pattern const none(s, across(n, 0.15), {}, {.subdivisions = 0});
@@ -290,12 +150,12 @@ TEST_CASE("a pattern before it is worn is the same surface: closed, oriented, of
 
 TEST_CASE("folds cut into each other and into what is enlarged, grooves into all") {
     std::uint32_t const n = 24;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     double const r = 0.15;
-    std::vector<wrinkle> const lines{{.controls = {at(n, 4, 12), at(n, 20, 12)}, .radius = r},
-                                     {.controls = {at(n, 12, 5), at(n, 12, 19)}, .radius = r, .strength = 2},
-                                     {.controls = {at(n, 8, 3), at(n, 8, 21)}, .radius = 0.07, .strength = -3, .profile = wrinkle_profile::groove}};
-    std::vector<enlargement> const bulge{{.centre = at(n, 15, 14), .radius = 0.3, .strength = 4}};
+    std::vector<wrinkle> const lines{{.controls = {sheet_vertex(n, 4, 12), sheet_vertex(n, 20, 12)}, .radius = r},
+                                     {.controls = {sheet_vertex(n, 12, 5), sheet_vertex(n, 12, 19)}, .radius = r, .strength = 2},
+                                     {.controls = {sheet_vertex(n, 8, 3), sheet_vertex(n, 8, 21)}, .radius = 0.07, .strength = -3, .profile = wrinkle_profile::groove}};
+    std::vector<enlargement> const bulge{{.centre = sheet_vertex(n, 15, 14), .radius = 0.3, .strength = 4}};
     wrinkle_pattern const p(s, lines, bulge, {.subdivisions = 1});
     triangle_surface const flat = p.wear(s.positions, 0);
     auto const factor = p.displacement();
@@ -307,7 +167,7 @@ TEST_CASE("folds cut into each other and into what is enlarged, grooves into all
     for (std::size_t v = 0; v < flat.positions.size(); ++v) {
         double const a = distance_to_path(flat, p.paths()[0], flat.positions[v]) / r;
         double const b = distance_to_path(flat, p.paths()[1], flat.positions[v]) / r;
-        double const c = length(vec3{flat.positions[v] - s.positions[at(n, 15, 14).value]}) / 0.3;
+        double const c = length(vec3{flat.positions[v] - s.positions[sheet_vertex(n, 15, 14).value]}) / 0.3;
         double expected = r / 10 * ((a < 1 ? bell(a) : 0) + (b < 1 ? 2 * bell(b) : 0)) + (c < 1 ? 0.3 / 10 * 4 * bell(c) : 0);
         if (a < 1 || b < 1) expected *= std::sqrt(std::min(a, b));
         double const d = distance_to_path(flat, p.paths()[2], flat.positions[v]) / 0.07;
@@ -320,14 +180,14 @@ TEST_CASE("folds cut into each other and into what is enlarged, grooves into all
 TEST_CASE("as printed, equations 12.1 to 12.3 hold in the model's unit") {
     std::uint32_t const n = 16;
     double const size = 8;
-    triangle_surface const s = sheet(n, size);
+    triangle_surface const s = flat_sheet(n, size);
     double const r = 1.6;
     double const sigma = r * r / 3;
-    std::vector<enlargement> const bulge{{.centre = at(n, 8, 13), .radius = 2, .strength = 3}};
+    std::vector<enlargement> const bulge{{.centre = sheet_vertex(n, 8, 13), .radius = 2, .strength = 3}};
     wrinkle_pattern const p(s, across(n, r), bulge, {.divisor = 5, .subdivisions = 0, .formula = wrinkle_formula::as_printed});
     for (std::size_t v = 0; v < s.positions.size(); ++v) {
         double const d = distance_to_path(s, p.paths()[0], s.positions[v]);
-        double const c = length(vec3{s.positions[v] - s.positions[at(n, 8, 13).value]});
+        double const c = length(vec3{s.positions[v] - s.positions[sheet_vertex(n, 8, 13).value]});
         auto const f = [](double x, double sig) { return std::exp(-x * x / (2 * sig * sig)) / (sig * std::sqrt(tau)); };
         double const expected = ((d < r ? f(d, sigma) : 0) + (c < 2 ? 3 * f(c, 4.0 / 3) : 0)) * std::sqrt(d) / 5;
         REQUIRE(p.displacement()[v] == Approx(expected).margin(1e-13));
@@ -353,8 +213,8 @@ TEST_CASE("n times, then m times more equal n + m times, on any number of thread
 
 TEST_CASE("a wrinkle is the same on a model of any size, unless asked as printed") {
     std::uint32_t const n = 24;
-    triangle_surface const small = sheet(n);
-    triangle_surface const large = sheet(n, 1024);
+    triangle_surface const small = flat_sheet(n);
+    triangle_surface const large = flat_sheet(n, 1024);
     triangle_surface const a = wrinkle_pattern(small, across(n, 0.2)).wear(small.positions);
     triangle_surface const b = wrinkle_pattern(large, across(n, 0.2 * 1024)).wear(large.positions);
     REQUIRE(a.positions.size() == b.positions.size());
@@ -387,7 +247,7 @@ TEST_CASE("a wrinkle is the same on a model of any size, unless asked as printed
 
 TEST_CASE("a negative groove carves a crack, as deep as its strength") {
     std::uint32_t const n = 32;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     auto const depth = [&](double strength, std::uint32_t times) {
         wrinkle_pattern const p(s, across(n, 0.1, wrinkle_profile::groove, strength));
         double low = 0;
@@ -402,22 +262,22 @@ TEST_CASE("a negative groove carves a crack, as deep as its strength") {
 
 TEST_CASE("an enlargement swells around its vertex and nowhere else") {
     std::uint32_t const n = 16;
-    triangle_surface const s = sheet(n);
-    std::vector<enlargement> const bulge{{.centre = at(n, 8, 8), .radius = 0.3}};
+    triangle_surface const s = flat_sheet(n);
+    std::vector<enlargement> const bulge{{.centre = sheet_vertex(n, 8, 8), .radius = 0.3}};
     wrinkle_pattern const p(s, {}, bulge);
     triangle_surface const worn = p.wear(s.positions);
     CHECK(worn.triangles == s.triangles);
     for (std::size_t v = 0; v < worn.positions.size(); ++v) {
-        double const d = length(s.positions[v] - s.positions[at(n, 8, 8).value]);
+        double const d = length(s.positions[v] - s.positions[sheet_vertex(n, 8, 8).value]);
         CHECK((worn.positions[v][2] > 0) == (d < 0.3));
     }
-    CHECK(worn.positions[at(n, 8, 8).value][2] == Approx(0.3 * 3 / std::sqrt(tau) / 10));
+    CHECK(worn.positions[sheet_vertex(n, 8, 8).value][2] == Approx(0.3 * 3 / std::sqrt(tau) / 10));
 }
 
 TEST_CASE("the other side of a thin wall stays as it is") {
     // A flat box of 0.01 between two sheets that hang together at the rim only.
     std::uint32_t const n = 24;
-    triangle_surface s = sheet(n);
+    triangle_surface s = flat_sheet(n);
     std::size_t const m = s.positions.size();
     triangle_surface const top = s;
     for (auto p : top.positions) s.positions.push_back(vec3{p[0], p[1], -0.01});
@@ -454,14 +314,14 @@ TEST_CASE("one pattern is worn by every model of the same topology") {
 
 TEST_CASE("wearing zero times only refines") {
     std::uint32_t const n = 16;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     wrinkle_pattern const p(s, across(n, 0.2));
     for (vec3 const& q : p.wear(s.positions, 0).positions) CHECK(q[2] == 0);
 }
 
 TEST_CASE("bad wrinkles are refused by name") {
     std::uint32_t const n = 4;
-    triangle_surface const s = sheet(n);
+    triangle_surface const s = flat_sheet(n);
     auto const refused = [&](wrinkle const& w, char const* what) {
         std::vector<wrinkle> const one{w};
         CHECK_THROWS_WITH(wrinkle_pattern(s, one), Catch::Contains(what));
@@ -501,14 +361,14 @@ TEST_CASE("bad wrinkles are refused by name") {
 
 TEST_CASE("zero-area faces, doubled faces and open borders carry wrinkles without a number that is none") {
     std::uint32_t const n = 8;
-    triangle_surface s = sheet(n);
-    s.positions[at(n, 4, 4).value] = s.positions[at(n, 4, 5).value];  // edges of no length
+    triangle_surface s = flat_sheet(n);
+    s.positions[sheet_vertex(n, 4, 4).value] = s.positions[sheet_vertex(n, 4, 5).value];  // edges of no length
     s.triangles.push_back({0, 0, 1});
     s.triangles.push_back(s.triangles.front());
-    s.triangles.push_back({at(n, 2, 2).value, at(n, 3, 3).value, at(n, 4, 4).value});
-    std::vector<wrinkle> const lines{{.controls = {at(n, 0, 0), at(n, 4, 4), at(n, 4, 5), at(n, 8, 8), at(n, 0, 8), at(n, 0, 0)}, .radius = 0.2},
-                                     {.controls = {at(n, 8, 0), at(n, 7, 0)}, .radius = 1e-3, .strength = -1, .profile = wrinkle_profile::groove}};
-    std::vector<enlargement> const bulge{{.centre = at(n, 4, 4), .radius = 0.2}};
+    s.triangles.push_back({sheet_vertex(n, 2, 2).value, sheet_vertex(n, 3, 3).value, sheet_vertex(n, 4, 4).value});
+    std::vector<wrinkle> const lines{{.controls = {sheet_vertex(n, 0, 0), sheet_vertex(n, 4, 4), sheet_vertex(n, 4, 5), sheet_vertex(n, 8, 8), sheet_vertex(n, 0, 8), sheet_vertex(n, 0, 0)}, .radius = 0.2},
+                                     {.controls = {sheet_vertex(n, 8, 0), sheet_vertex(n, 7, 0)}, .radius = 1e-3, .strength = -1, .profile = wrinkle_profile::groove}};
+    std::vector<enlargement> const bulge{{.centre = sheet_vertex(n, 4, 4), .radius = 0.2}};
     wrinkle_pattern const p(s, lines, bulge);
     for (double const d : p.displacement()) REQUIRE(std::isfinite(d));
     for (vec3 const& q : p.wear(s.positions, 3).positions) REQUIRE(is_finite(q));
