@@ -24,17 +24,18 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--gravity", a.gravity, "x,y,z, length unit / s^2; default: 10 L downwards");
     add_up(*c, a.up);
     c->add_option("--radius", a.radius, "at which a particle touches rock; default: the mean edge")->check(between(1e-300, 1e100));
-    c->add_option("--friction", a.friction, "of rain: share of the velocity lost on rock per second; default: by gravity and L")->check(between(0.0, 1e6));
+    c->add_option("--friction", a.friction, "share of the velocity lost on rock per second; default: of rain by gravity and L, of sph sqrt(g / radius) / 4, which holds "
+                  "streams on slopes at a Froude number of 4 sin(slope)")->check(between(0.0, 1e6));
     c->add_option("--lifetime", a.lifetime, "of rain: seconds until a drop seeps away; default: by gravity and L")->check(between(1e-12, 1e12));
     c->add_option("--adhesion", a.adhesion, "of rain: pull of rock on a drop that touches it, over gravity; default: 0.8")->check(between(0.0, 10.0));
     c->add_option("--frame", a.frame, "seconds that an iteration takes; 0: one stable step; default: 0, with sph by gravity and L")->check(between(0.0, 1e12));
     c->add_option("--viscosity", a.viscosity, "of sph: length unit^2 / s; default: by gravity and L")->check(between(0.0, 1e100));
-    c->add_option("--k", a.k, "FIELD, erosion rate of partheniades; default: by gravity and L");
-    c->add_option("--tau-c", a.tau_c, "FIELD, stress below which particles lay down; default: by gravity and L");
+    c->add_option("--k", a.k, "FIELD, erosion rate of partheniades; default: by gravity and L, with sph and the radius");
+    c->add_option("--tau-c", a.tau_c, "FIELD, stress below which particles lay down; default: by gravity and L, with sph by gravity and the radius");
     c->add_option("--a", a.a, "FIELD, exponent of the stress")->capture_default_str();
     c->add_option("--K", a.K, "FIELD, consistency of the fluid")->capture_default_str();
     c->add_option("--m", a.m, "FIELD, power of the shear rate: 1 water, below 1 mud that thins")->capture_default_str();
-    c->add_option("--influence", a.influence, "of model curvature: distance that a particle acts over; default: the mean edge (a flood: 3 of them)")->check(between(1e-300, 1e100));
+    c->add_option("--influence", a.influence, "of model curvature: distance that a particle acts over; default: the mean edge (a flood: 3 of them), with sph and the radius that it rests off rock")->check(between(1e-300, 1e100));
     c->add_option("--power", a.power, "of model curvature: of the curvature")->check(between(1.0, 100.0))->capture_default_str();
     add_estimator(*c, a.estimator);
     c->add_option("--durability", a.durability, "FIELD that divides the erosion of either model")->capture_default_str();

@@ -87,7 +87,7 @@ hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
     // What cannot be read, or would have no effect, is told before the work begins.
     bool const rain = a_.fluid == "rain";
     bool const shear = a_.model == "partheniades";
-    only_with("--fluid rain", rain, {{"--friction", a_.friction >= 0}, {"--lifetime", a_.lifetime > 0}, {"--adhesion", a_.adhesion >= 0}});
+    only_with("--fluid rain", rain, {{"--lifetime", a_.lifetime > 0}, {"--adhesion", a_.adhesion >= 0}});
     only_with("--fluid sph", !rain, {{"--viscosity", a_.viscosity >= 0}});
     only_with("--model partheniades", shear, {{"--k", !a_.k.empty()}, {"--tau-c", !a_.tau_c.empty()}});
     only_with("--model curvature", !shear, {{"--influence", a_.influence > 0}, {"--power", a_.power != 1}});
@@ -128,17 +128,21 @@ void hydraulic_session::settle() {
     double const fall = std::sqrt(size / g);   // s, about as long as a drop falls
     double const speed = std::sqrt(size * g);  // about that at which it lands
     w.radius = a_.radius > 0 ? a_.radius : edge;
-    w.friction = a_.friction >= 0 ? a_.friction : 0.8 / fall;
+    bool const sph = a_.fluid == "sph";
+    // A stream a particle deep runs at about the speed of its waves, whatever it came down from, so what is told of it goes by
+    // the particles: friction for a Froude number of 4 sin(slope), and stresses of water that thick at that speed.
+    double const pace = std::sqrt(g / w.radius);
+    double const stress = sph ? pace : speed / edge;  // of rain: of water as thick as an edge at the speed of a fall
+    w.friction = a_.friction >= 0 ? a_.friction : sph ? 0.25 * pace : 0.8 / fall;
     w.lifetime = a_.lifetime > 0 ? a_.lifetime : 15 * fall;
     w.adhesion = a_.adhesion >= 0 ? a_.adhesion : 0.8;
     w.largest_step = 0.1 * fall;
     w.viscosity = a_.viscosity >= 0 ? a_.viscosity : 0.02 * speed * w.radius;
-    double const stress = speed / edge;  // of water as thick as an edge at that speed
-    w.tau_c = a_.tau_c.empty() ? text_of(0.1 * stress) : a_.tau_c;
-    bool const sph = a_.fluid == "sph";  // stands a radius off the rock, and moves slowly there
-    w.k = a_.k.empty() ? text_of((sph ? 0.015 : 0.0015) * size / (fall * stress)) : a_.k;
+    w.tau_c = a_.tau_c.empty() ? text_of((sph ? 0.2 : 0.1) * stress) : a_.tau_c;
+    // About an edge in 600 iterations where a stream cuts.
+    w.k = a_.k.empty() ? text_of((sph ? 3 * edge : 0.0015 * size) / (fall * stress)) : a_.k;
     w.frame = a_.frame >= 0 ? a_.frame : sph ? 0.005 * fall : 0.0;
-    w.influence = a_.influence > 0 ? a_.influence : edge;
+    w.influence = a_.influence > 0 ? a_.influence : edge + (sph ? w.radius : 0.0);  // sph rests a radius off the rock
     w.step = a_.step >= 1 ? a_.step : sph ? 100 : 10;
     int const axis = axis_of(w.up);
     bool const rises = w.up[axis] > 0;
@@ -199,7 +203,7 @@ void hydraulic_session::run_process(Process const& process) {
     hydraulic_options const options{.step_divisor = water_.step, .refine_length = a_.refine, .check_every = a_.check_every};
     if (a_.fluid == "sph") {
         sph<float> const water(water_.emitter, water_.sink,
-                               {.particles = a_.particles, .spacing = water_.radius, .viscosity = water_.viscosity,
+                               {.particles = a_.particles, .spacing = water_.radius, .viscosity = water_.viscosity, .friction = water_.friction,
                                 .gravity = water_.gravity, .largest_step = water_.largest_step, .frame = water_.frame});
         hydraulic_run run(input_.surface, water, process, options);
         run_with(run);
