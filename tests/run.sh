@@ -90,27 +90,38 @@ configured() { # preset cmake-arguments...
     shift
     step "$preset-configure" cmake -S "$root" -B "$build/$preset" --preset "$preset" "$@"
 }
-# A file that does not compile fails its own tests and no others.
+# A file that does not compile fails its own tests, and those of the files that it is compiled with, and no others.
 built() { # preset targets...
     preset=$1
     shift
     step "$preset-build" cmake --build "$build/$preset" -j "$jobs" --target "$@" -- -k 0
 }
 
+# Short cuts for the compiler, none of them with --full: tests at -Og (half of the time that -O2 takes), related ones as
+# one unit, and g++ clears up behind itself only above a gigabyte.
+if [ $mode = full ]; then
+    group=-DTAFONI_GROUP_TESTS=OFF
+    set -- -DTAFONI_VERIFY_DETAILS=ON -DTAFONI_TEST_FLAGS= -DCMAKE_CXX_FLAGS= $group
+else
+    group=-DTAFONI_GROUP_TESTS=ON
+    set -- -DTAFONI_TEST_FLAGS=-Og "-DCMAKE_CXX_FLAGS=--param=ggc-min-heapsize=1000000" $group
+fi
+
 if [ $mode = fast ]; then
-    configured gcc -DTAFONI_BUILD_EXAMPLES=OFF
+    configured gcc -DTAFONI_BUILD_EXAMPLES=OFF "$@"
     built gcc all
     tests gcc -L fast
     left_out="slow tests, examples, compile-fail cases, header self-containment, consumer, clang, golden bits, sanitizers, fuzzing"
 else
-    configured gcc -DTAFONI_BUILD_EXAMPLES=ON -DTAFONI_VERIFY_DETAILS=$([ $mode = full ] && echo ON || echo OFF)
-    built gcc all all_verify_interface_header_sets
+    configured gcc -DTAFONI_BUILD_EXAMPLES=ON "$@"
+    built gcc all $([ $mode = full ] && echo all_verify_interface_header_sets || echo tafoni_check_headers)
     step include-arrows cmake -P "$root/cmake/arrows.cmake"
     step umbrella cmake -DCHECK=ON -P "$root/cmake/umbrella.cmake"
     tests gcc
 
     for compiler in g++ clang++-19; do
-        step "consumer-$compiler" sh "$root/tests/consumer/run.sh" "$compiler" "$build/consumer-$compiler"
+        step "consumer-$compiler" sh "$root/tests/consumer/run.sh" "$compiler" "$build/consumer-$compiler" \
+            $([ $mode$compiler = plainclang++-19 ] && echo --installed)
     done
     step golden sh "$root/tests/determinism/run.sh" "$build/golden" "$jobs" $([ $mode = full ] || echo --ends)
 
@@ -121,16 +132,18 @@ else
         configured bench
         built bench all
     else
-        left_out="the plain clang build (its fast tests ran under the sanitizers), slow tests with clang, golden bits at -O2 with clang
-and at -O3 without AVX2, the headers of detail/ on their own, the paper's scenes, real data and foreign libraries under the sanitizers, the checks of
-pointers for null, alignment, size, type and overflow, fuzzing of whole algorithms, benchmarks"
+        left_out="the plain clang build (its fast tests ran under the sanitizers), slow tests with clang, the tests at -O2 and each file as
+a unit of its own, golden bits at -O2 and at -O3 without AVX2, headers on their own without Eigen, those of detail/ on their own,
+the consumer by sources with clang, under the sanitizers the paper's scenes, real data, foreign libraries, random cases, and what
+reliability/ says of parameters and environment, the checks of pointers for null, alignment, size, type and overflow, fuzzing of
+whole algorithms, benchmarks"
     fi
 
     if [ $mode = full ]; then
-        configured asan-ubsan -DTAFONI_LEAVE_OUT_TESTS= -DTAFONI_FUZZ_ALGORITHMS=ON -DTAFONI_FUZZ_SEED=0 \
+        configured asan-ubsan $group -DTAFONI_LEAVE_OUT_TESTS= -DTAFONI_FUZZ_ALGORITHMS=ON -DTAFONI_FUZZ_SEED=0 \
             "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined -fno-sanitize-recover=all"
     else
-        configured asan-ubsan
+        configured asan-ubsan $group
     fi
     built asan-ubsan all
     if [ $mode = full ]; then
@@ -138,7 +151,7 @@ pointers for null, alignment, size, type and overflow, fuzzing of whole algorith
     else
         tests asan-ubsan -L 'fast|compile_fail|fuzz'
     fi
-    configured tsan
+    configured tsan $group
     built tsan all
     tests tsan -L threads
 fi

@@ -1,7 +1,7 @@
-# cmake -DCOMPILER=... -DCASE=file -DINCLUDE=dir -DSYSTEM=dirs -P check.cmake
+# cmake -DCOMPILER=... -DCASE=file -DINCLUDE=dir -DSYSTEM=dirs -DPARSED=flags -P check.cmake
 
 # The compilers' own defaults: what is counted is what a user sees.
-set(flags -std=c++20 -fsyntax-only "-I${INCLUDE}")
+set(flags -std=c++20 -fsyntax-only ${PARSED} "-I${INCLUDE}")
 foreach(folder IN LISTS SYSTEM)
     list(APPEND flags -isystem "${folder}")
 endforeach()
