@@ -41,6 +41,7 @@ enum class laplacian_length {
 struct laplacian_direction {
     laplacian_length scale = laplacian_length::unit;
 
+    /// Of length 1, or zero where the vertex is the mean of its neighbours; as printed in length units. O(1).
     [[nodiscard]] vec3 direction(wear_point const& at) const noexcept {
         return scale == laplacian_length::unit ? normalized(at.laplacian) : at.laplacian;
     }
@@ -48,6 +49,7 @@ struct laplacian_direction {
 
 /// Straight into the solid; keeps a mesh's uneven triangles uneven. Models `direction_policy`.
 struct inward_normal {
+    /// Of length 1, or zero where there is no normal. O(1).
     [[nodiscard]] vec3 direction(wear_point const& at) const noexcept {
         return vec3{-at.normal[0], -at.normal[1], -at.normal[2]};
     }
@@ -56,6 +58,7 @@ struct inward_normal {
 /// Inward normal where the surface is flat, Laplacian where it is bent most, in between in proportion
 /// [thesis, 9.4]. Models `direction_policy`.
 struct blended_direction {
+    /// Of length at most 1, shorter where the two differ. O(1).
     [[nodiscard]] vec3 direction(wear_point const& at) const noexcept {
         double const t = std::min(std::fabs(at.curvature), 1.0);
         vec3 const l = normalized(at.laplacian);

@@ -22,6 +22,7 @@
 
 namespace tafoni {
 
+/// What rain is told; lengths in the model's unit.
 struct rain_options {
     std::uint32_t particles = 10000;   ///< drops under way, 1 .. 2^24
     double radius = 1;                 ///< at which a drop touches the ground, length unit, > 0

@@ -134,8 +134,9 @@ struct refine_faces_fn {
     }
 };
 
-/// Splits the edges that `wanted(a, b)` names; the triangles around follow.
 struct refine_edges_fn {
+    /// `wanted(a, b)` with a < b is asked once for every triangle at an edge; those around become two, three or four.
+    /// O(faces + splits log splits). \throws invalid_input  `size_overflow`.
     template <class Wanted>
     [[nodiscard]] refined_faces operator()(triangle_surface const& s, Wanted const& wanted) const {
         std::vector<std::array<std::uint32_t, 2>> edges;

@@ -86,6 +86,7 @@ enum class mesh_topology {
     keep    ///< vertices and triangles keep their numbers, for hosts that need it
 };
 
+/// How far vertices go, what happens to small triangles and to those that cut each other.
 struct curvature_options {
     double power = 1;            ///< n of equation 9.5, in [1, 100]; larger spares flat regions
     double step_divisor = 10;    ///< x of equation 9.3: no vertex moves farther than a mean edge / x; >= 1
@@ -94,7 +95,7 @@ struct curvature_options {
     /// Iterations between searches for triangles that cut each other, and once more at the end of every run; 0 = never.
     std::uint32_t check_every = 0;
     /// How often a surface may be taken back to the last sound one where the search finds some, with half the step or
-    /// with more held still.
+    /// with more held still, 0 to 60.
     std::uint32_t retries = 6;
     /// Halvings of the step after which the vertices of the triangles that still cut each other are held still, with those
     /// within an edge of them (two edges the second time in a row, ...), and the step grows back. `retries` or more: never.
