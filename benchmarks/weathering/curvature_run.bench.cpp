@@ -44,6 +44,24 @@ void kept(benchmark::State& state) {
     iterate(state, bust(), {.topology = mesh_topology::keep}, static_cast<std::size_t>(state.range(0)));
 }
 void adapted(benchmark::State& state) { iterate(state, bust(), {}, static_cast<std::size_t>(state.range(0))); }
+/// Only the iterations that collapse edges.
+void collapsing(benchmark::State& state) {
+    auto const threads = static_cast<std::size_t>(state.range(0));
+    thread_pool const pool(threads);
+    curvature_run run(bust());
+    for (auto _ : state) {
+        std::uint64_t const before = run.report().edges_collapsed;
+        double seconds = 0;
+        for (int k = 0; k < 1000 && run.report().edges_collapsed == before; ++k) {
+            auto const start = std::chrono::steady_clock::now();
+            if (threads == 1) benchmark::DoNotOptimize(run.run(1));
+            else benchmark::DoNotOptimize(run.run(1, {}, pool));
+            seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        }
+        state.SetIterationTime(seconds);
+    }
+    state.counters["collapsed"] = static_cast<double>(run.report().edges_collapsed);
+}
 /// Ten iterations and a search.
 void checked(benchmark::State& state) {
     curvature_run run(bust(), curvature_weathering{}, {.check_every = 10});
@@ -130,8 +148,10 @@ void to_plain_loop(benchmark::State& state) {
 
 BENCHMARK(kept)->Name("weathering/curvature_run/keep/bust")->ArgName("threads")->Arg(1)->Arg(2)->Arg(4)
     ->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(adapted)->Name("weathering/curvature_run/adapt/bust")->ArgName("threads")->Arg(1)->Arg(4)
+BENCHMARK(adapted)->Name("weathering/curvature_run/adapt/bust")->ArgName("threads")->Arg(1)->Arg(2)->Arg(4)
     ->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(collapsing)->Name("weathering/curvature_run/adapt/collapsing/bust")->ArgName("threads")->Arg(1)->Arg(4)
+    ->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(30);
 BENCHMARK(checked)->Name("weathering/curvature_run/check_every:10/ten/bust")->Iterations(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(ball)->Name("weathering/curvature_run/keep/icosphere")->ArgName("level")->DenseRange(5, 7)
     ->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
