@@ -4,7 +4,7 @@
 #   out/frost_plot.png  its volume and broken links over the paths
 #   out/voxel.png       a hoodoo under the durability profile of examples/hoodoo.txt, from cube to sphere, a cavern
 #   out/curvature.png   a cube, a hand and a bust that wear by their curvature, and a crack
-#   out/hydraulic.png   water in a gorge, over a bust and on a terrain
+#   out/hydraulic.png   water in a gorge, in a winding valley, over a bust and on a terrain
 #   sh examples/run.sh                 the built-in outcrop
 #   sh examples/run.sh FILE            your mesh (.obj .ply .stl) or elevation grid (.asc)
 #   --up x|y|z     which axis of the model points up (default z)

@@ -1,4 +1,4 @@
-# Running water: a stream that cuts a gorge (Figure 9.10 of the source), rain that flutes a bust (Figure 9.9) and rain on a slope. Sourced by examples/run.sh.
+# Running water: streams that cut a gorge (Figure 9.10 of the source) and a winding valley, rain that flutes a bust (Figure 9.9) and rain on a slope. Sourced by examples/run.sh.
 # shellcheck shell=sh disable=SC2154
 . "$root/examples/pictures/meshes.sh"
 
@@ -49,7 +49,11 @@ mkdir -p "$results"
 # Water with pressure, for it has to get out of the pools that it digs.
 pour gorge $((4000 / part)) "--camera-position=3.05,0.2,0.68 --camera-focal-point=1.1,0.53,0.12" "0 0 1" 45 $((8000 / part)) "a gorge" "cut by a stream" \
     builtin:canyon:resolution=$((80 / coarse)) --fluid sph --particles $((6000 / coarse)) --radius 0.022 \
-    --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 --durability 0.04 --step 30 --frame 0
+    --emitter 0.02,0.44,0.15,0.12,0.62,0.32 --velocity 2,0,0 --step 30 --frame 0
+
+pour river $((2500 / part)) "--camera-position=2.42,-1.07,1.67 --camera-focal-point=0.8,0.45,0.05" "0 0 1" 45 $((6000 / part)) "a valley" "cut by a river" \
+    builtin:valley:resolution=$((120 / coarse)),width=0.16,depth=0.12,fall=0.2 --fluid sph --particles $((6000 / coarse)) --radius 0.012 \
+    --emitter 0.03,0.52,0.3,0.12,0.62,0.36 --velocity 1,0.3,0
 
 model=builtin:bust:resolution=$((110 / coarse))
 look="0.5 -1 0.35"
@@ -76,7 +80,7 @@ pour terrain $((500 / part)) "0.8 -1 0.9" "0 0 1" 50 $((900 / part)) "a slope" "
     --durability 0.14 --step 20 --friction 12
 # shellcheck disable=SC2086
 legend "$results/bars.png" "water: none" much $wet
-stack "$out/hydraulic.png" "$results/gorge.png" "$results/bust.png" "$results/terrain.png" "$results/bars.png"
+stack "$out/hydraulic.png" "$results/gorge.png" "$results/river.png" "$results/bust.png" "$results/terrain.png" "$results/bars.png"
 rm -f "$results"/*.png
 panel=$full
 letters=$((panel / 17))
