@@ -81,6 +81,7 @@
 #include <tafoni/geometry/make_solid.hpp>
 #include <tafoni/geometry/predicates.hpp>
 #include <tafoni/geometry/refine_faces.hpp>
+#include <tafoni/geometry/refined_origins.hpp>
 #include <tafoni/geometry/repair_mesh.hpp>
 #include <tafoni/geometry/repair_solid.hpp>
 #include <tafoni/geometry/sampling.hpp>

@@ -316,7 +316,19 @@ TEST_CASE("wearing zero times only refines") {
     std::uint32_t const n = 16;
     triangle_surface const s = flat_sheet(n);
     wrinkle_pattern const p(s, across(n, 0.2));
-    for (vec3 const& q : p.wear(s.positions, 0).positions) CHECK(q[2] == 0);
+    triangle_surface const fine = p.wear(s.positions, 0);
+    for (vec3 const& q : fine.positions) CHECK(q[2] == 0);
+    CHECK(p.origins().carried(s.positions) == fine.positions);
+    REQUIRE(p.origins().face.size() == fine.triangles.size());
+    REQUIRE(fine.triangles.size() > s.triangles.size());
+    auto const middle = [](triangle_surface const& m, std::size_t f) {
+        auto const& t = m.triangles[f];
+        return vec3{(m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3};
+    };
+    double const edge = s.mean_edge_length();
+    for (std::size_t f = 0; f < fine.triangles.size(); ++f) {
+        CHECK(length(vec3{middle(fine, f) - middle(s, p.origins().face[f].value)}) < edge);
+    }
 }
 
 TEST_CASE("bad wrinkles are refused by name") {

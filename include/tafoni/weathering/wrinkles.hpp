@@ -8,6 +8,7 @@
 #include <tafoni/core/executor.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
 #include <tafoni/geometry/refine_faces.hpp>
+#include <tafoni/geometry/refined_origins.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
 #include <tafoni/weathering/detail/wrinkle_reach.hpp>
@@ -93,6 +94,7 @@ public:
             ground.require_used("enlargements[" + std::to_string(k) + "].centre", enlargements[k].centre);
         }
         triangle_surface& s = ground.surface;
+        origins_ = refined_origins(s.triangles.size());
         double share = 1 / ground.unit;
         for (std::uint32_t k = 0; k < options_.subdivisions; ++k, share /= 3) {
             refine(s, wrinkles, share);
@@ -110,7 +112,7 @@ public:
     [[nodiscard]] triangle_surface wear(std::span<vec3 const> positions, std::uint32_t times = 1, E const& threads = {}) const {
         require_vertices(positions.size(), base_vertices_, "the base");
         triangle_surface s{.positions = {positions.begin(), positions.end()}, .triangles = triangles_};
-        add_midpoints(s.positions, midpoints_);
+        add_midpoints(s.positions, origins_.midpoints);
         return wear_again(std::move(s), times, threads);
     }
 
@@ -145,7 +147,9 @@ public:
     [[nodiscard]] std::span<double const> displacement() const noexcept { return factor_; }
     [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
     /// Ends of the edge that refined vertex `base_vertices() + k` lies in the middle of.
-    [[nodiscard]] std::span<std::array<std::uint32_t, 2> const> midpoints() const noexcept { return midpoints_; }
+    [[nodiscard]] std::span<std::array<std::uint32_t, 2> const> midpoints() const noexcept { return origins_.midpoints; }
+    /// The same with the base's face of each triangle; `origins().carried(u)` gives numbers of the base's vertices to all.
+    [[nodiscard]] refined_origins const& origins() const noexcept { return origins_; }
     [[nodiscard]] std::size_t base_vertices() const noexcept { return base_vertices_; }
     /// Vertices along each wrinkle, in refined numbers.
     [[nodiscard]] std::span<std::vector<vertex_index> const> paths() const noexcept { return paths_; }
@@ -186,8 +190,8 @@ private:
         refined_faces fine = refine_faces(s, chosen);
         for (auto& path : paths_) refine_path(path, fine.midpoints, s.positions.size());
         add_midpoints(s.positions, fine.midpoints);
+        origins_.follow(fine);
         s.triangles = std::move(fine.triangles);
-        midpoints_.insert(midpoints_.end(), fine.midpoints.begin(), fine.midpoints.end());
     }
 
     /// Edges of the path that were split get their middle.
@@ -261,7 +265,7 @@ private:
     std::vector<std::vector<vertex_index>> paths_{};
     std::vector<std::array<std::uint32_t, 3>> triangles_{};
     vertex_rings rings_{};
-    std::vector<std::array<std::uint32_t, 2>> midpoints_{};
+    refined_origins origins_{};
     std::vector<double> factor_{};
 };
 
