@@ -47,6 +47,7 @@ struct hydraulic_state {
     hydraulic_report report{};
     double ahead = 0;  ///< s that the fluid is ahead of the surface by
     std::vector<double> clear{};  ///< way that vertices have to other walls, below 0 unknown; or empty
+    std::vector<double> given{};  ///< that they had when it was found; as many
 };
 
 /// Options and process; fields as they answer at the vertices of the input. O(vertices).
@@ -120,6 +121,7 @@ template <class Fluid>
     out.put_real(s.ahead);
     out.put(std::uint64_t{s.clear.size()});
     for (double const c : s.clear) out.put_real(c);
+    for (double const c : s.given) out.put_real(c);
     fluid.save(out);
     out.put(byte_hash(out.bytes()));
     return std::move(out.bytes());
@@ -206,9 +208,11 @@ private:
         s.report.vertices_added = static_cast<std::size_t>(in_.get());
         s.ahead = positive();
         std::uint64_t const clear = in_.get();
-        if ((clear != 0 && clear != n) || clear > in_.left() / 8) bad("the count of ways does not fit the mesh");
+        if ((clear != 0 && clear != n) || clear > in_.left() / 16) bad("the count of ways does not fit the mesh");
         s.clear.resize(static_cast<std::size_t>(clear));
         for (double& c : s.clear) c = in_.get_real();
+        s.given.resize(s.clear.size());
+        for (double& c : s.given) c = in_.get_real();
         return s;
     }
 

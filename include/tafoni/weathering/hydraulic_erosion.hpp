@@ -48,6 +48,7 @@ struct partheniades_erosion {
     any_field consistency = 1;     ///< K, Pa s^m, >= 0
     any_field power = 1;           ///< m, > 0: 1 water, below 1 mud that thins, above 1 that thickens
 
+    /// Length unit / s, positive where the surface goes down. O(1) and five fields, each asked at the particle.
     [[nodiscard]] double rate(wash_point const& at) const {
         vec3 const& n = at.normal;
         double const up = dot(at.velocity, n);
@@ -114,14 +115,16 @@ inline constexpr bool is_curvature_erosion<curvature_erosion<E>> = true;
 template <class P>
 concept hydraulic_process = exchange_rule<P> || detail::is_curvature_erosion<P>;
 
+/// How far vertices may go, and where the mesh gets finer.
 struct hydraulic_options {
     double step_divisor = 10;       ///< no vertex moves farther in an iteration than the first mean edge over this, nor
                                     ///< than a quarter of the lowest triangle at it; >= 1
     double refine_length = 0;       ///< edges near water that are longer are split [thesis, 8.5], length unit; 0 = none
     std::uint32_t refine_every = 8; ///< iterations between two looks for long edges, >= 1
-    std::uint32_t check_every = 0;  ///< iterations between two looks at the walls around moving vertices; until the next
-                                    ///< they go less than half of the way to the nearest triangle that is no neighbour, so
-                                    ///< that walls do not cut each other. 1 sees best, 0 = never
+    std::uint32_t check_every = 0;  ///< vertices under water are given a way, less than half of that to the nearest triangle
+                                    ///< that is no neighbour, so that walls do not cut each other; after so many iterations
+                                    ///< new ones, where one in twenty has gone three quarters of it, and after ten times as
+                                    ///< many anyway. 20 costs little, 1 lets what is fast go on best, 0 = never
 
     /// \throws invalid_input  `bad_parameter`.
     void validate() const {

@@ -98,7 +98,7 @@ public:
     /// The state as bytes, the same on every machine. O(vertices + faces + particles).
     [[nodiscard]] std::vector<std::byte> checkpoint() const requires saved_fluid<Fluid> {
         return detail::write_checkpoint({.surface = surface_, .wear = wear_, .flow = flow_, .sediment = sediment_, .books = books_,
-                                         .report = report_, .ahead = ahead_, .clear = clear_},
+                                         .report = report_, .ahead = ahead_, .clear = clear_, .given = given_},
                                         fluid_, input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same process, options and fluid: the same bits as
@@ -120,6 +120,7 @@ public:
         report_ = s.report;
         ahead_ = s.ahead;
         clear_ = std::move(s.clear);
+        given_ = std::move(s.given);
         walls_.clear();
         fresh_ = false;
     }
@@ -224,7 +225,13 @@ private:
     template <executor Executor>
     void look_around(double most, Executor const& threads) {
         std::size_t const n = surface_.positions.size();
-        if (clear_.size() != n || report_.iterations % options_.check_every == 0) clear_.assign(n, -1.0);
+        bool const anew = clear_.size() != n || (report_.iterations % options_.check_every == 0 &&
+                                                 (report_.iterations / options_.check_every % detail::most_looks_spared == 0 ||
+                                                  detail::many_have_gone(clear_, given_)));
+        if (anew) {
+            clear_.assign(n, -1.0);
+            given_.assign(n, 0.0);
+        }
         wet_.assign(n, 0);
         if constexpr (exchange_rule<Process>) {
             for (std::size_t v = 0; v < n; ++v) wet_[v] = books_.due[v] != 0 ? 1 : 0;
@@ -243,8 +250,10 @@ private:
         for (std::size_t v = 0; v < n; ++v) {
             if (wet_[v] != 0) movers_.push_back(static_cast<std::uint32_t>(v));
         }
-        double const look = options_.check_every * most / detail::wall_clearance::share;
+        double const look = detail::most_looks_spared * options_.check_every * most / detail::wall_clearance::share;
+        std::erase_if(movers_, [&](std::uint32_t v) { return clear_[v] >= 0; });
         clearance_.find(moving(), movers_, look, clear_, threads);
+        for (std::uint32_t const v : movers_) given_[v] = clear_[v];
     }
 
     void keep() {
@@ -255,6 +264,7 @@ private:
         kept_.books = books_;
         kept_.report = report_;
         kept_.clear = clear_;
+        kept_.given = given_;
     }
     void take_back() noexcept {
         std::swap(surface_.positions, kept_.positions);
@@ -263,6 +273,7 @@ private:
         std::swap(sediment_, kept_.sediment);
         std::swap(books_, kept_.books);
         std::swap(clear_, kept_.clear);
+        std::swap(given_, kept_.given);
         report_ = kept_.report;
         fresh_ = false;
     }
@@ -347,6 +358,7 @@ private:
         detail::sediment_books books{};
         hydraulic_report report{};
         std::vector<double> clear{};
+        std::vector<double> given{};
     };
 
     Process process_;
@@ -372,6 +384,7 @@ private:
     detail::wall_clearance clearance_{};
     detail::held_borders border_{};
     std::vector<double> clear_{};         ///< way that vertices have to other walls, below 0 not known
+    std::vector<double> given_{};         ///< that they had when it was found
     std::vector<std::uint32_t> movers_{};
     std::vector<unsigned char> wet_{};
     std::vector<vec3> next_{};
