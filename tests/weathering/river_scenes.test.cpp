@@ -162,6 +162,7 @@ struct inflow {
     double deep = 2;       ///< cells
     double fine = 0.6;     ///< spacing of particles or radius of drops, cells
     std::uint32_t particles = 1500;
+    double friction = 0;   ///< of a stream, over sqrt(g / spacing)
 
     [[nodiscard]] box_emitter source(valley const& v) const {
         vec3 const s = v.course[1];
@@ -185,7 +186,7 @@ struct inflow {
     [[nodiscard]] double frame(valley const& v) const { return 0.1 * std::sqrt(0.1 * v.cell); }
     [[nodiscard]] sph<float> stream(valley const& v) const {
         return sph<float>(source(v), drain(v),
-                          {.particles = particles, .spacing = fine * v.cell, .sound_speed = 100 * std::sqrt(fine * v.cell), .gravity = vec3{0, 0, -9.81}, .frame = frame(v)});
+                          {.particles = particles, .spacing = fine * v.cell, .sound_speed = 100 * std::sqrt(fine * v.cell), .friction = friction * std::sqrt(9.81 / (fine * v.cell)), .gravity = vec3{0, 0, -9.81}, .frame = frame(v)});
     }
     [[nodiscard]] rain_particles drops(valley const& v) const {
         return rain_particles(source(v), drain(v),
@@ -379,6 +380,33 @@ TEST_CASE("a faster stream and a deeper one wear a real valley more", "[slow]") 
         CHECK(slow > 0);
         CHECK(eroded({.speed = 30}) > 1.4 * slow);
         CHECK(eroded({.deep = 4}) > 1.2 * slow);
+    });
+}
+
+TEST_CASE("friction keeps a stream in a real valley to its bed", "[slow]") {
+    in_valley(GENERATE(ridge, alps), 45, [](valley const& v) {
+        struct run_of {
+            double speed = 0;     // mean of the particles, at the end
+            double touching = 0;  // nodes of the course that the water ran over
+        };
+        auto const of = [&](double friction) {
+            hydraulic_run run(v.ground, inflow{.friction = friction}.stream(v), shear_of(0));
+            run.run(300);
+            CHECK(run.report().ledger.eroded == 0);
+            run_of out;
+            auto const n = run.fluid().particle_count();
+            for (std::size_t i = 0; i < n; ++i) out.speed += length(run.fluid().velocity(i)) / static_cast<double>(n);
+            for (std::size_t i = 0; i < v.ground.positions.size(); ++i) {
+                if (v.nearest(v.ground.positions[i]).second < 0.1 * v.cell && run.flow()[i] > 0) ++out.touching;
+            }
+            return out;
+        };
+        run_of const smooth = of(0);
+        run_of const rough = of(0.25);
+        CAPTURE(smooth.speed, smooth.touching, rough.speed, rough.touching, v.course.size());
+        CHECK(rough.speed < 0.8 * smooth.speed);
+        CHECK(rough.touching > smooth.touching);
+        CHECK(rough.touching > 0.9 * static_cast<double>(v.course.size()));
     });
 }
 
