@@ -147,6 +147,10 @@ TEST_CASE("a room lends arrays that do not overlap, takes them back when calls t
     CHECK(room.idle_bytes() == bytes);
     estimator_room moved(std::move(room));
     CHECK(moved.idle_bytes() == bytes);
+    for (std::size_t const size : {1000U, 2000U, 3000U}) {
+        estimator_room::array<unsigned char> const growing(moved, size);
+    }
+    CHECK(moved.idle_bytes() <= 3000 + 50 * 24);
 }
 
 TEST_CASE("a room may be used by several threads at once", "[threads]") {

@@ -438,6 +438,30 @@ TEST_CASE("curvature is that of the surface at any time, asks nothing of a run a
     CHECK(std::as_const(resumed).curvature() == run.curvature());
 }
 
+TEST_CASE("what a run keeps from iteration to iteration is what a run that is resumed finds anew, where edges collapse too") {
+    triangle_surface s = torus_surface(24, 12, 0.3).mesh;
+    for (vec3& p : s.positions) p[2] *= 0.25;
+    s.positions.push_back(vec3{2, 2, 2});  // a lone vertex, and a triangle that names one twice
+    s.triangles.push_back({3, 3, 7});
+    curvature_options const options{.small_edge = 0.2};
+    for (bool const open : {false, true}) {
+        if (open) s.triangles.erase(s.triangles.begin() + 100, s.triangles.begin() + 140);
+        curvature_run run(s, curvature_weathering{}, options);
+        std::uint64_t collapsing = 0;
+        for (int k = 0; k < 20; ++k) {
+            std::uint64_t const before = run.report().edges_collapsed;
+            curvature_run resumed(s, curvature_weathering{}, options);
+            resumed.resume(run.checkpoint());
+            run.run(1);
+            resumed.run(1);
+            REQUIRE(resumed.checkpoint() == run.checkpoint());
+            collapsing += run.report().edges_collapsed > before ? 1U : 0U;
+        }
+        CHECK(collapsing >= 3);
+        CHECK(collapsing < 20);
+    }
+}
+
 TEST_CASE("every option out of range is refused by name") {
     triangle_surface const s = cube(2);
     double const nan = std::numeric_limits<double>::quiet_NaN();
