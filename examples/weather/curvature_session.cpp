@@ -2,8 +2,10 @@
 
 #include "field_choice.hpp"
 #include "input.hpp"
+#include "notes.hpp"
 #include "spec.hpp"
 
+#include <tafoni/io/curvature_channels.hpp>
 #include <tafoni/version.hpp>
 
 #include <algorithm>
@@ -32,6 +34,11 @@ curvature_session::curvature_session(curvature_arguments const& a)
     // A FIELD that cannot be read is told before the work begins.
     box3 const any{.lo = {0, 0, 0}, .hi = {1, 1, 1}};
     static_cast<void>(make_field("--durability", a_.durability, least_durability, 1e9, {.bounds = any, .up = parse_up(a_.up), .seed = a_.seed}));
+    if (a_.estimator != "bubble") unused_.tell("without --estimator bubble", {{"--ball", a_.ball > 0}});
+    if (a_.keep_topology) unused_.tell("with --keep-topology", {{"--small-edge", a_.small_edge != curvature_arguments{}.small_edge}});
+    if (a_.check_every == 0) {
+        unused_.tell("without --check-every", {{"--retries", a_.retries != curvature_arguments{}.retries}, {"--hold-after", a_.hold_after != curvature_arguments{}.hold_after}});
+    }
 }
 
 bool curvature_session::run() {
@@ -96,11 +103,14 @@ void curvature_session::run_with(Direction direction) {
     seconds_["weather"] = watch.lap() - aside_;
     write_results(run);
     seconds_["write"] = watch.lap() + aside_;
-    write_report(run);
+    cut_counts const cuts = cut_counts::of(input_.surface, run.surface());
+    seconds_["check"] = watch.lap();
+    write_report(run, cuts);
     curvature_report const& r = run.report();
     std::fprintf(stderr, "%s: %llu iterations, %zu vertices, %llu edges collapsed, volume less by %.4g\n", a_.output.c_str(),
                  static_cast<unsigned long long>(r.iterations), run.surface().positions.size(),
                  static_cast<unsigned long long>(r.edges_collapsed), r.removed_volume);
+    cuts.tell(a_.check_every == 0 ? "--check-every 10 prevents it" : "a smaller --check-every may help");
     if (r.held > 0) {
         std::fprintf(stderr, "%llu vertices were held still, where triangles would have cut each other\n", static_cast<unsigned long long>(r.held));
     }
@@ -122,15 +132,13 @@ void curvature_session::weather(Run& run) {
         series_.recall(out_, a_.snapshots, run.report().iterations);
     }
     std::uint64_t const begin = run.report().iterations;
-    // About 50 rows of history, at iterations that do not depend on where a run was resumed.
-    std::uint64_t const row = std::max<std::uint64_t>(1, (a_.iterations + 49) / 50);
     std::uint64_t last = ~std::uint64_t{0};
     run_context const context{.on_progress = [&](progress_event const&) {
         std::uint64_t const n = run.report().iterations;
         if (n != last) {
             last = n;
             stopwatch watch;
-            if (n % row == 0) add_history(run);
+            if (history_table::has_row(n)) add_history(run);
             if (a_.snapshots > 0 && n % a_.snapshots == 0) {
                 series_.write(out_, n, surface(run));
                 history_.write(out_);
@@ -147,7 +155,7 @@ void curvature_session::weather(Run& run) {
 
 template <class Run>
 surface_mesh curvature_session::surface(Run& run) {
-    return mesh_with(run.surface(), {vertex_numbers("curvature", run.curvature(threads_)), vertex_numbers("wear", run.wear())});
+    return mesh_with(run.surface(), channels_of(run, threads_).vertex_channels);
 }
 
 template <class Run>
@@ -185,7 +193,7 @@ void curvature_session::write_results(Run& run) {
 }
 
 template <class Run>
-void curvature_session::write_report(Run& run) const {
+void curvature_session::write_report(Run& run, cut_counts const& cuts) const {
     curvature_report const& r = run.report();
     triangle_surface const s = run.surface();
     std::vector<double> const wear = run.wear();
@@ -200,6 +208,7 @@ void curvature_session::write_report(Run& run) const {
                        {"durability", a_.durability}, {"keep_topology", a_.keep_topology}, {"small_edge", a_.small_edge},
                        {"check_every", a_.check_every}, {"retries", a_.retries}, {"hold_after", a_.hold_after}, {"up", a_.up}, {"snapshots", a_.snapshots},
                        {"format", a_.formats}};
+    j["unused"] = unused_.json();
     j["mesh"] = json_of(input_);
     j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};
     j["threads"] = a_.threads;
@@ -213,6 +222,7 @@ void curvature_session::write_report(Run& run) const {
     j["held"] = r.held;
     j["step"] = r.step;
     j["volume_before"] = volume_of(input_.surface, input_.bounds);
+    j["self_intersections"] = cuts.json();
     j["volume_removed"] = r.removed_volume;
     j["largest_wear"] = wear.empty() ? 0.0 : *std::max_element(wear.begin(), wear.end());
     j["seconds"] = seconds_;

@@ -2,11 +2,12 @@
 
 #include "field_choice.hpp"
 #include "input.hpp"
+#include "notes.hpp"
 #include "spec.hpp"
 
-#include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
+#include <tafoni/io/hydraulic_channels.hpp>
 #include <tafoni/version.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
@@ -37,11 +38,30 @@ box3 parse_box(std::string const& option, std::string const& text) {
     return out;
 }
 
-/// Options that are given but have no effect are refused.
-void only_with(char const* choice, bool chosen, std::initializer_list<std::pair<char const*, bool>> options) {
-    for (auto const& [name, given] : options) {
-        if (given && !chosen) throw usage_error(std::string(name) + " has an effect only with " + choice);
+/// As many layers of places a spacing apart, from the rock up, as so many particles need, and no wider than 2^22 places.
+box3 with_room_for(double particles, double spacing, box3 box, int axis, bool rises) {
+    auto const places = [&](int d) { return std::floor((box.hi[d] - box.lo[d]) / spacing) + 1; };
+    double layer = 1;
+    for (int d = 0; d < 3; ++d) {
+        if (d != axis) layer *= places(d);
     }
+    double const most = 4194304;
+    if (layer > most) {
+        for (int d = 0; d < 3; ++d) {
+            if (d == axis) continue;
+            double const cut = 0.5 * (box.hi[d] - box.lo[d]) * (1 - std::sqrt(most / layer));
+            box.lo[d] += cut;
+            box.hi[d] -= cut;
+        }
+        layer = most;
+    }
+    double const layers = std::min(places(axis), std::ceil(particles / layer));
+    if (rises) {
+        box.hi[axis] = std::min(box.hi[axis], box.lo[axis] + spacing * (layers - 1));
+    } else {
+        box.lo[axis] = std::max(box.lo[axis], box.hi[axis] - spacing * (layers - 1));
+    }
+    return box;
 }
 
 int axis_of(vec3 const& up) {
@@ -84,13 +104,9 @@ std::vector<std::string> hydraulic_fluids() { return {"rain", "sph"}; }
 hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
     : a_(a), progress_(progress_style_of(a.progress)), threads_(a.threads), out_(a.output, a.formats, vec3{0, 0, 0}),
       estimator_(parse_estimator(a.estimator)) {
-    // What cannot be read, or would have no effect, is told before the work begins.
+    // What cannot be read, or has no effect, is told before the work begins.
     bool const rain = a_.fluid == "rain";
     bool const shear = a_.model == "partheniades";
-    only_with("--fluid rain", rain, {{"--lifetime", a_.lifetime > 0}, {"--adhesion", a_.adhesion >= 0}});
-    only_with("--fluid sph", !rain, {{"--viscosity", a_.viscosity >= 0}});
-    only_with("--model partheniades", shear, {{"--k", !a_.k.empty()}, {"--tau-c", !a_.tau_c.empty()}});
-    only_with("--model curvature", !shear, {{"--influence", a_.influence > 0}, {"--power", a_.power != 1}});
     static_cast<void>(up());
     static_cast<void>(parse_vector("--velocity", a_.velocity));
     if (!a_.emitter.empty()) static_cast<void>(parse_box("--emitter", a_.emitter));
@@ -98,6 +114,13 @@ hydraulic_session::hydraulic_session(hydraulic_arguments const& a)
     w.k = a_.k.empty() ? "1" : a_.k;
     w.tau_c = a_.tau_c.empty() ? "1" : a_.tau_c;
     static_cast<void>(make_fields({.lo = {0, 0, 0}, .hi = {1, 1, 1}}, w));
+    if (rain) unused_.tell("without --fluid sph", {{"--viscosity", a_.viscosity >= 0}, {"--sound-speed", a_.sound_speed > 0}});
+    if (!rain) unused_.tell("without --fluid rain", {{"--lifetime", a_.lifetime > 0}, {"--adhesion", a_.adhesion >= 0}});
+    if (shear) unused_.tell("without --model curvature", {{"--influence", a_.influence > 0}, {"--power", a_.power != 1}});
+    if (!shear) {
+        unused_.tell("without --model partheniades", {{"--k", !a_.k.empty()}, {"--tau-c", !a_.tau_c.empty()}, {"--a", a_.a != "1"}, {"--K", a_.K != "1"}, {"--m", a_.m != "1"}});
+    }
+    if (!a_.gravity.empty() && length(parse_vector("--gravity", a_.gravity)) > 0) unused_.tell("with --gravity", {{"--up", a_.up != "z"}});
 }
 
 /// Against gravity, where it is given.
@@ -142,6 +165,9 @@ void hydraulic_session::settle() {
     // About an edge in 600 iterations where a stream cuts.
     w.k = a_.k.empty() ? text_of((sph ? 3 * edge : 0.0015 * size) / (fall * stress)) : a_.k;
     w.frame = a_.frame >= 0 ? a_.frame : sph ? 0.005 * fall : 0.0;
+    // Where nothing tells how fast water will be, as under the gravity that is the default.
+    bool const at_rest = !(length(w.gravity) > 0) && !(length(parse_vector("--velocity", a_.velocity)) > 0);
+    w.sound_speed = a_.sound_speed > 0 ? a_.sound_speed : at_rest ? 10 * std::sqrt(2 * g * 16 * w.radius) : 0.0;
     w.influence = a_.influence > 0 ? a_.influence : edge + (sph ? w.radius : 0.0);  // sph rests a radius off the rock
     w.step = a_.step >= 1 ? a_.step : sph ? 100 : 10;
     int const axis = axis_of(w.up);
@@ -159,6 +185,7 @@ void hydraulic_session::settle() {
         double const deep = 0.1 * size;
         box.lo[axis] = rises ? b.hi[axis] + near_by : b.lo[axis] - near_by - deep;
         box.hi[axis] = rises ? b.hi[axis] + near_by + deep : b.lo[axis] - near_by;
+        if (sph) w.emitter.box = with_room_for(a_.particles, w.radius, box, axis, rises);
     } else {
         w.emitter.box = parse_box("--emitter", a_.emitter);
     }
@@ -203,7 +230,7 @@ void hydraulic_session::run_process(Process const& process) {
     hydraulic_options const options{.step_divisor = water_.step, .refine_length = a_.refine, .check_every = a_.check_every};
     if (a_.fluid == "sph") {
         sph<float> const water(water_.emitter, water_.sink,
-                               {.particles = a_.particles, .spacing = water_.radius, .viscosity = water_.viscosity, .friction = water_.friction,
+                               {.particles = a_.particles, .spacing = water_.radius, .sound_speed = water_.sound_speed, .viscosity = water_.viscosity, .friction = water_.friction,
                                 .gravity = water_.gravity, .largest_step = water_.largest_step, .frame = water_.frame});
         hydraulic_run run(input_.surface, water, process, options);
         run_with(run);
@@ -220,7 +247,14 @@ template <class Run>
 void hydraulic_session::run_with(Run& run) {
     if (!a_.resume.empty()) {
         std::string const bytes = load_bytes(a_.resume);
-        run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+        auto const refuse = [&]<class E>(E const& e) { detail::fail<E>(e.code(), a_.resume + ": " + e.what(), {.kind = entity::file, .file = a_.resume}); };
+        try {
+            run.resume(std::as_bytes(std::span(bytes.data(), bytes.size())));
+        } catch (io_error const& e) {
+            refuse(e);
+        } catch (invalid_input const& e) {
+            refuse(e);
+        }
         if (run.report().iterations > a_.iterations) {
             throw usage_error("--iterations " + std::to_string(a_.iterations) + ": the checkpoint has " +
                               std::to_string(run.report().iterations));
@@ -249,11 +283,15 @@ void hydraulic_session::run_with(Run& run) {
     if (a_.snapshots > 0) series_.finish(out_);
     progress_.show("write", 1);
     seconds_["write"] = watch.lap() + aside_;
-    write_report(run);
+    cut_counts const cuts = cut_counts::of(input_.surface, run.surface());
+    seconds_["check"] = watch.lap();
+    write_report(run, cuts);
     hydraulic_report const& r = run.report();
     std::fprintf(stderr, "%s: %llu iterations, %.4g s of flow, %llu contacts, eroded %.4g, deposited %.4g, carried %.4g, left %.4g\n", a_.output.c_str(),
                  static_cast<unsigned long long>(r.iterations), r.time, static_cast<unsigned long long>(r.contacts), r.ledger.eroded,
                  r.ledger.deposited, r.ledger.carried, r.ledger.left);
+    if (r.contacts == 0 && r.iterations > 0) note("no particle touched the mesh; what may help: another --emitter, a larger --radius, more --iterations");
+    cuts.tell(a_.check_every == 0 ? "--check-every 20 prevents it" : "shorter steps (--step " + text_of(3 * water_.step) + ") may help");
 }
 
 template <class Run>
@@ -263,9 +301,6 @@ void hydraulic_session::weather(Run& run) {
         history_.recall(out_, done);
         series_.recall(out_, a_.snapshots, done);
     }
-    // About 50 rows of history, at iterations that do not depend on where a run was resumed; the run is cut there, which
-    // changes nothing.
-    std::uint64_t const row = std::max<std::uint64_t>(1, (a_.iterations + 49) / 50);
     run_context const context{.on_progress = [&](progress_event const&) {
         std::uint64_t const n = run.report().iterations;
         double const share = a_.iterations == 0 ? 1 : static_cast<double>(n) / static_cast<double>(a_.iterations);
@@ -273,7 +308,7 @@ void hydraulic_session::weather(Run& run) {
     }};
     for (;;) {
         stopwatch watch;
-        if (done % row == 0) {
+        if (history_table::has_row(done)) {  // the run is cut there, which changes nothing
             static_cast<void>(run.run(0));  // brings the report up to date
             add_history(run);
         }
@@ -284,7 +319,7 @@ void hydraulic_session::weather(Run& run) {
         }
         aside_ += watch.lap();
         if (done == a_.iterations) break;
-        std::uint64_t next = std::min(a_.iterations, (done / row + 1) * row);
+        std::uint64_t next = std::min(a_.iterations, history_table::next_row(done));
         if (a_.snapshots > 0) next = std::min(next, (done / a_.snapshots + 1) * a_.snapshots);
         hydraulic_report const r = run.run(next - done, context, threads_);
         done = r.iterations;
@@ -303,11 +338,7 @@ void hydraulic_session::write_checkpoint(Run const& run, std::string const& path
 
 template <class Run>
 surface_mesh hydraulic_session::surface(Run const& run) const {
-    triangle_surface const& s = run.surface();
-    std::vector<double> flow(run.flow().begin(), run.flow().end());
-    return mesh_with(s, {vertex_numbers("curvature", estimate_curvature(s, estimator_, threads_)),
-                         vertex_numbers("wear", {run.wear().begin(), run.wear().end()}), vertex_numbers("flow", std::move(flow)),
-                         vertex_numbers("sediment", run.sediment())});
+    return mesh_with(run.surface(), channels_of(run, estimator_, threads_).vertex_channels);
 }
 
 template <class Run>
@@ -320,7 +351,7 @@ void hydraulic_session::add_history(Run& run) {
 }
 
 template <class Run>
-void hydraulic_session::write_report(Run const& run) const {
+void hydraulic_session::write_report(Run const& run, cut_counts const& cuts) const {
     hydraulic_report const& r = run.report();
     water_settings const& w = water_;
     nlohmann::ordered_json j;
@@ -332,10 +363,11 @@ void hydraulic_session::write_report(Run const& run) const {
     j["parameters"] = {{"model", a_.model}, {"fluid", a_.fluid}, {"iterations", a_.iterations}, {"particles", a_.particles},
                        {"emitter", {{"lo", json_of(w.emitter.box.lo)}, {"hi", json_of(w.emitter.box.hi)}}},
                        {"velocity", json_of(w.emitter.velocity)}, {"gravity", json_of(w.gravity)}, {"radius", w.radius},
-                       {"friction", w.friction}, {"lifetime", w.lifetime}, {"adhesion", w.adhesion}, {"frame", w.frame}, {"viscosity", w.viscosity}, {"k", w.k}, {"tau_c", w.tau_c},
+                       {"friction", w.friction}, {"lifetime", w.lifetime}, {"adhesion", w.adhesion}, {"frame", w.frame}, {"viscosity", w.viscosity}, {"sound_speed", w.sound_speed}, {"k", w.k}, {"tau_c", w.tau_c},
                        {"a", a_.a}, {"K", a_.K}, {"m", a_.m}, {"influence", w.influence}, {"power", a_.power}, {"estimator", a_.estimator},
                        {"durability", a_.durability}, {"step", w.step}, {"refine", a_.refine}, {"check_every", a_.check_every}, {"snapshots", a_.snapshots},
                        {"format", a_.formats}};
+    j["unused"] = unused_.json();
     j["mesh"] = json_of(input_);
     j["bounds"] = {{"lo", json_of(input_.bounds.lo)}, {"hi", json_of(input_.bounds.hi)}};
     j["keep"] = {{"lo", json_of(w.sink.keep.lo)}, {"hi", json_of(w.sink.keep.hi)}};
@@ -351,6 +383,8 @@ void hydraulic_session::write_report(Run const& run) const {
     j["vertices_added"] = r.vertices_added;
     j["ledger"] = {{"eroded", r.ledger.eroded}, {"deposited", r.ledger.deposited}, {"carried", r.ledger.carried}, {"left", r.ledger.left}};
     j["volume_before"] = volume_of(input_.surface, input_.bounds);
+    j["volume_after"] = volume_of(run.surface(), input_.bounds);
+    j["self_intersections"] = cuts.json();
     auto const wear = run.wear();
     j["largest_wear"] = wear.empty() ? 0.0 : *std::max_element(wear.begin(), wear.end());
     j["seconds"] = seconds_;

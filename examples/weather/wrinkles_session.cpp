@@ -1,10 +1,11 @@
 #include "wrinkles_session.hpp"
 
 #include "input.hpp"
+#include "notes.hpp"
 #include "spec.hpp"
 
 #include <tafoni/core/detail/bytes.hpp>
-#include <tafoni/curvature/estimate_curvature.hpp>
+#include <tafoni/io/wrinkle_channels.hpp>
 #include <tafoni/version.hpp>
 
 #include <algorithm>
@@ -99,6 +100,11 @@ wrinkles_session::wrinkles_session(wrinkles_arguments const& a)
     }
     for (std::string const& text : a_.through) static_cast<void>(points_of(text));
     static_cast<void>(enlargements());
+    if (a_.paths.empty() && a_.through.empty()) {
+        wrinkles_arguments const plain;
+        unused_.tell("without --path or --through", {{"--radius", a_.radius > 0}, {"--strength", !std::isnan(a_.strength)}, {"--profile", a_.profile != plain.profile},
+                                                     {"--as-printed", a_.as_printed}});
+    }
     if (std::isnan(a_.strength)) a_.strength = a_.profile == "groove" ? -1 : 1;
 }
 
@@ -134,10 +140,7 @@ std::vector<enlargement> wrinkles_session::enlargements() const {
 }
 
 surface_mesh wrinkles_session::worn(wrinkle_pattern const& pattern, triangle_surface const& flat, triangle_surface const& now) const {
-    std::vector<double> wear(now.positions.size());
-    for (std::size_t v = 0; v < wear.size(); ++v) wear[v] = length(now.positions[v] - flat.positions[v]);
-    return mesh_with(now, {vertex_numbers("curvature", estimate_curvature(now, tensor_fit{}, threads_)), vertex_numbers("wear", std::move(wear)),
-                           vertex_numbers("factor", {pattern.displacement().begin(), pattern.displacement().end()})});
+    return mesh_with(now, channels_of(pattern, flat, now, tensor_fit{}, threads_).vertex_channels);
 }
 
 bool wrinkles_session::run() {
@@ -190,10 +193,13 @@ bool wrinkles_session::run() {
     if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
     if (a_.snapshots > 0) series_.finish(out_);
     seconds_["write"] = watch.lap() + aside_;
-    write_report(input, pattern, volume_of(result, input.bounds));
+    cut_counts const cuts = cut_counts::of(input.surface, result);
+    seconds_["check"] = watch.lap();
+    write_report(input, pattern, volume_of(result, input.bounds), cuts);
     progress_.show("write", 1);
     std::fprintf(stderr, "%s: %zu wrinkles, %zu enlargements, %zu vertices added\n", a_.output.c_str(), lines.size(), a_.enlargements.size(),
                  result.positions.size() - input.surface.positions.size());
+    cuts.tell("a smaller --strength or fewer --times prevent it");
     return !stopped_;
 }
 
@@ -258,7 +264,7 @@ void wrinkles_session::resume(triangle_surface& now) {
     }
 }
 
-void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern const& pattern, double volume) const {
+void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern const& pattern, double volume, cut_counts const& cuts) const {
     nlohmann::ordered_json paths = nlohmann::ordered_json::array();
     for (auto const& path : pattern.paths()) {
         nlohmann::ordered_json line = nlohmann::ordered_json::array();
@@ -274,6 +280,7 @@ void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern con
     j["parameters"] = {{"path", a_.paths}, {"through", a_.through}, {"enlarge", a_.enlargements}, {"radius", a_.radius},
                        {"strength", a_.strength}, {"profile", a_.profile}, {"times", a_.times}, {"divisor", a_.divisor},
                        {"subdivisions", a_.subdivisions}, {"as_printed", a_.as_printed}, {"wear_on", a_.wear_on}, {"snapshots", a_.snapshots}, {"format", a_.formats}};
+    j["unused"] = unused_.json();
     j["mesh"] = json_of(input);
     j["bounds"] = {{"lo", json_of(input.bounds.lo)}, {"hi", json_of(input.bounds.hi)}};
     j["threads"] = a_.threads;
@@ -285,6 +292,7 @@ void wrinkles_session::write_report(mesh_input const& input, wrinkle_pattern con
     j["vertices_added"] = pattern.midpoints().size();
     j["volume_before"] = volume_of(input.surface, input.bounds);
     j["volume_after"] = volume;
+    j["self_intersections"] = cuts.json();
     j["seconds"] = seconds_;
     j["paths"] = paths;
     out_.write_text("report.json", j.dump(2) + "\n");
