@@ -47,6 +47,7 @@ void with_room(surface_view const& s, With const& with) {
 ///
 /// A share is summed by one thread: it meets its triangles in ascending order, so that the sums are those of one thread.
 /// A triangle between shares is worked out in each of them; in meshes whose vertices stand in some order those are few.
+/// Every thread looks through all triangles for its own, which costs less than to fetch what others have found.
 class corner_shares {
 public:
     /// O(faces). Keeps 4 bytes of `room` per face and share, most of them never touched.
@@ -54,52 +55,40 @@ public:
     corner_shares(surface_view const& s, estimator_room& room, E const& executor)
         : vertices_(s.positions.size()), faces_(s.triangles.size()),
           count_(std::clamp<std::size_t>(std::min(vertices_, faces_) / least, 1, std::min(executor.thread_count(), most))),
-          scale_((std::uint64_t{count_} << 32) / std::max<std::size_t>(vertices_, 1)), chunks_((faces_ + chunk - 1) / chunk),
-          faces_of_(room, count_ > 1 ? count_ * chunks_ * chunk : 0), length_(room, count_ > 1 ? chunks_ : 0) {
+          found_(room, count_ > 1 ? count_ * faces_ : 0) {
         if (count_ == 1) return;
-        executor.for_blocks(faces_, chunk, [&](std::size_t begin, std::size_t end) {
-            std::array<std::uint32_t, most> n{};
-            std::uint32_t* const list = faces_of_.begin() + begin * count_;
-            auto const add = [&](std::size_t share, std::size_t f) { list[share * chunk + n[share]++] = static_cast<std::uint32_t>(f); };
-            for (std::size_t f = begin; f < end; ++f) {
-                auto const& t = s.triangles[f];
-                std::size_t const i = of(t[0]);
-                std::size_t const j = of(t[1]);
-                std::size_t const k = of(t[2]);
-                add(i, f);
-                if (i == j && j == k) continue;
-                if (j != i) add(j, f);
-                if (k != i && k != j) add(k, f);
+        executor.for_blocks(count_, 1, [&](std::size_t share, std::size_t) {
+            std::size_t const first = begin(share);
+            std::size_t const size = begin(share + 1) - first;
+            std::uint32_t* const list = found_.begin() + share * faces_;
+            std::size_t n = 0;
+            for (std::size_t f = 0; f < faces_; ++f) {  // without a branch: triangles in no order go either way
+                auto const [i, j, k] = s.triangles[f];
+                bool const mine = (i - first < size) | (j - first < size) | (k - first < size);
+                list[n] = static_cast<std::uint32_t>(f);
+                n += mine ? 1U : 0U;
             }
-            length_[begin / chunk] = n;
+            length_[share] = n;
         });
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
     [[nodiscard]] std::size_t begin(std::size_t share) const noexcept {
-        return share == count_ ? vertices_ : static_cast<std::size_t>(((std::uint64_t{share} << 32) + scale_ - 1) / scale_);
+        return vertices_ / count_ * share + std::min(share, vertices_ % count_);
     }
-    /// `f(list)` for the ascending lists of triangles that together reach a share, themselves ascending.
-    template <class F>
-    void for_lists(std::size_t share, F const& f) const {
-        for (std::size_t c = 0; c < chunks_; ++c) {
-            f(std::span<std::uint32_t const>(faces_of_.begin() + (c * count_ + share) * chunk, length_[c][share]));
-        }
+    /// The triangles that reach a share, ascending.
+    [[nodiscard]] std::span<std::uint32_t const> triangles(std::size_t share) const noexcept {
+        return {found_.begin() + share * faces_, length_[share]};
     }
 
 private:
-    [[nodiscard]] std::size_t of(std::uint32_t v) const noexcept { return static_cast<std::size_t>((v * scale_) >> 32); }
-
-    static constexpr std::size_t chunk = 2048;
     static constexpr std::size_t most = 16;
     static constexpr std::size_t least = 64;  ///< vertices in a share
     std::size_t vertices_;
     std::size_t faces_;
     std::size_t count_;
-    std::uint64_t scale_;
-    std::size_t chunks_;
-    estimator_room::array<std::uint32_t> faces_of_;
-    estimator_room::array<std::array<std::uint32_t, most>> length_;
+    estimator_room::array<std::uint32_t> found_;
+    std::array<std::size_t, most> length_{};
 };
 
 /// `sum_corners` by one thread.
@@ -147,15 +136,14 @@ void sum_corners(surface_view const& s, corner_shares const& shares, std::span<S
             add_to(at(j), face.corner(1, which));
             add_to(at(k), face.corner(2, which));
         };
-        shares.for_lists(share, [&](std::span<std::uint32_t const> list) {
-            std::size_t k = 0;
-            for (; k + 1 < list.size(); k += 2) {
-                auto const two = source.of(list[k], list[k + 1]);
-                add(list[k], two, 0);
-                add(list[k + 1], two, 1);
-            }
-            if (k < list.size()) add(list[k], source.of(list[k]), 0);
-        });
+        std::span<std::uint32_t const> const list = shares.triangles(share);
+        std::size_t n = 0;
+        for (; n + 1 < list.size(); n += 2) {
+            auto const two = source.of(list[n], list[n + 1]);
+            add(list[n], two, 0);
+            add(list[n + 1], two, 1);
+        }
+        if (n < list.size()) add(list[n], source.of(list[n]), 0);
         for (std::size_t v = 0; v < size; ++v) finish(begin + v, mine[v]);
     });
 }
