@@ -4,6 +4,7 @@
 #include "curvature_command.hpp"
 #include "mesh_choice.hpp"
 #include "mesh_output.hpp"
+#include "notes.hpp"
 #include "progress.hpp"
 
 #include <tafoni/core/thread_pool.hpp>
@@ -35,7 +36,7 @@ private:
     template <class Run>
     void write_results(Run& run);
     template <class Run>
-    void write_report(Run& run) const;
+    void write_report(Run& run, cut_counts const& cuts) const;
 
     curvature_arguments a_;
     progress progress_;
@@ -47,6 +48,7 @@ private:
     double aside_ = 0;  ///< seconds within the run that were not the run's
     snapshot_series series_{"curvature"};
     history_table history_{"iterations,vertices,faces,edges_collapsed,volume"};
+    unused_options unused_;
     bool stopped_ = false;
 };
 

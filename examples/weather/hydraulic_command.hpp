@@ -28,6 +28,7 @@ struct hydraulic_arguments {
     double lifetime = -1;
     double adhesion = -1;             ///< below 0: 0.8
     double viscosity = -1;
+    double sound_speed = -1;
     double frame = -1;                ///< below 0: for sph by gravity and L, else 0
     std::string k;
     std::string tau_c;
@@ -40,7 +41,7 @@ struct hydraulic_arguments {
     std::string durability = "1";
     double step = -1;                 ///< below 0: 10, for sph, whose steps are short, 100
     double refine = 0;
-    std::uint32_t check_every = 0;
+    std::uint32_t check_every = 20;
     std::uint64_t seed = 1;
     std::size_t threads = 1;
     std::uint64_t snapshots = 0;

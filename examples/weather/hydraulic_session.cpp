@@ -210,6 +210,10 @@ bool hydraulic_session::run() {
     stopwatch watch;
     progress_.context().tick("read", 0);
     input_ = load_surface(a_.input, a_.seed);
+    if (!(input_.size >= 1e-60 && input_.size <= 1e60)) {
+        detail::fail<invalid_input>(errc::out_of_range, a_.input + ": the model is " + text_of(input_.size) + " long; water runs over models of 1e-60 to 1e60 only",
+                                    {.kind = entity::file, .value = input_.size, .file = a_.input});
+    }
     progress_.context().tick("read", 1);
     settle();
     seconds_["read"] = watch.lap();

@@ -4,6 +4,7 @@
 #include "hydraulic_command.hpp"
 #include "mesh_choice.hpp"
 #include "mesh_output.hpp"
+#include "notes.hpp"
 #include "progress.hpp"
 
 #include <tafoni/core/thread_pool.hpp>
@@ -41,6 +42,7 @@ private:
         double adhesion = 0.8;
         double largest_step = 1;
         double viscosity = 0;
+        double sound_speed = 0;  ///< 0: by gravity and the emitter
         std::string k;
         std::string tau_c;
         double influence = 0;
@@ -66,7 +68,7 @@ private:
     template <class Run>
     void add_history(Run& run);
     template <class Run>
-    void write_report(Run const& run) const;
+    void write_report(Run const& run, cut_counts const& cuts) const;
 
     hydraulic_arguments a_;
     progress progress_;
@@ -79,6 +81,7 @@ private:
     double aside_ = 0;  ///< seconds within the run that were not the run's
     snapshot_series series_{"hydraulic"};
     history_table history_{"iterations,time,vertices,contacts,eroded,deposited,carried,left"};
+    unused_options unused_;
     bool stopped_ = false;
 };
 

@@ -69,6 +69,10 @@ mesh_input load_surface(std::string const& name, std::uint64_t seed) {
         mesh = repair_mesh(mesh, {.drop_degenerate = true}).mesh;
         look = inspect_mesh(mesh);
     }
+    if (!look.orientable) {
+        detail::fail<bad_topology>(errc::non_orientable, name + ": the surface is not orientable: it has one side only, as a Moebius strip, so that nothing is inwards",
+                                   {.kind = entity::file, .file = name});
+    }
     std::size_t turned = 0;
     if (look.inconsistent_edges > 0 || (look.open_edges == 0 && look.crowded_edges == 0)) {
         repaired_mesh mended = repair_mesh(mesh, {.orient = true});
@@ -76,6 +80,9 @@ mesh_input load_surface(std::string const& name, std::uint64_t seed) {
         if (turned > 0) mesh = std::move(mended.mesh);
     }
     out.open_edges = look.open_edges;
+    out.isolated_vertices = look.unused_vertices;
+    out.crowded_edges = look.crowded_edges;
+    out.duplicate_faces = look.duplicate_faces;
     out.repaired = {{"turned_faces", turned}, {"dropped_faces", degenerate}};
     out.surface = triangles_of(mesh);
     for (auto const& t : out.surface.triangles) {

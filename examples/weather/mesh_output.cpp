@@ -3,6 +3,7 @@
 #include <tafoni/curvature/vertex_normals.hpp>
 #include <tafoni/geometry/vertex_rings.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,17 @@
 namespace weather {
 
 using namespace tafoni;
+
+namespace {
+
+/// Not the volumes of very large or small models.
+bool fits_float(std::vector<double> const& values) {
+    double largest = 0;
+    for (double const v : values) largest = std::max(largest, std::fabs(v));
+    return largest == 0 || (largest > 1e-30 && largest < 1e38);
+}
+
+}  // namespace
 
 void tell_repairs(mesh_input const& input) {
     for (auto const& [what, count] : input.repaired.items()) {
@@ -36,6 +48,9 @@ surface_mesh mesh_with(triangle_surface const& surface, std::vector<mesh_channel
         std::vector<double> along(normal.size());
         for (std::size_t v = 0; v < along.size(); ++v) along[v] = normal[v][a];
         channels.push_back(vertex_numbers(names[a], std::move(along)));
+    }
+    for (mesh_channel& c : channels) {
+        if (c.type == channel_type::float32 && !fits_float(c.values)) c.type = channel_type::float64;
     }
     out.attributes.vertex_channels = std::move(channels);
     return out;
@@ -99,6 +114,7 @@ nlohmann::ordered_json json_of(vec3 const& v) { return {v[0], v[1], v[2]}; }
 
 nlohmann::ordered_json json_of(mesh_input const& input) {
     return {{"vertices", input.surface.positions.size()}, {"faces", input.surface.triangles.size()}, {"open_edges", input.open_edges},
+            {"isolated_vertices", input.isolated_vertices}, {"crowded_edges", input.crowded_edges}, {"duplicate_faces", input.duplicate_faces},
             {"terrain", input.terrain}, {"mean_edge", input.mean_edge()}};
 }
 

@@ -6,6 +6,9 @@
 
 #include <tafoni/geometry/triangle_surface.hpp>
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,10 +50,15 @@ public:
     explicit history_table(std::string heading) : heading_(std::move(heading)) {}
 
     void recall(output_folder const& out, std::uint64_t until);
+    /// Iterations that rows are of: each at first, then 16 to 32 in a doubling, wherever a run ends or is resumed.
+    [[nodiscard]] static bool has_row(std::uint64_t iteration) { return iteration % spacing(iteration) == 0; }
+    [[nodiscard]] static std::uint64_t next_row(std::uint64_t iteration) { return (iteration / spacing(iteration) + 1) * spacing(iteration); }
     void add(std::string row);  ///< equal rows in a row count once
     void write(output_folder const& out) const;
 
 private:
+    [[nodiscard]] static std::uint64_t spacing(std::uint64_t iteration) { return std::bit_floor(std::max<std::uint64_t>(iteration, 32)) / 16; }
+
     std::string heading_;
     std::vector<std::string> rows_{};
 };

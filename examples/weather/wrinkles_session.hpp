@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh_output.hpp"
+#include "notes.hpp"
 #include "progress.hpp"
 #include "wrinkles_command.hpp"
 
@@ -30,7 +31,7 @@ private:
     void weather(tafoni::wrinkle_pattern const& pattern, tafoni::triangle_surface const& flat, tafoni::triangle_surface& now);
     void write_checkpoint(tafoni::triangle_surface const& now, std::string const& path) const;
     void resume(tafoni::triangle_surface& now);
-    void write_report(mesh_input const& input, tafoni::wrinkle_pattern const& pattern, double volume) const;
+    void write_report(mesh_input const& input, tafoni::wrinkle_pattern const& pattern, double volume, cut_counts const& cuts) const;
 
     wrinkles_arguments a_;
     progress progress_;
@@ -41,6 +42,7 @@ private:
     std::uint64_t hash_ = 0;  ///< of the surface and what is worn
     std::uint32_t done_ = 0;  ///< times
     double aside_ = 0;        ///< seconds within the weathering that were not its own
+    unused_options unused_;
     bool stopped_ = false;
 };
 
