@@ -100,8 +100,9 @@ TEST_CASE("curvature is scaled over its range, and over a turn of 0.01 per edge 
         for (double const power : {1.0, 2.0}) {
             hydraulic_run run(s, still{.at = s.positions}, curvature_erosion<>{.power = power, .influence = 0.1});
             run.run(1);
-            std::vector<vec3> const normal = normals_of(s);
+            vertex_rings const rings(s.positions.size(), s.triangles);
             for (std::size_t v = 0; v < s.positions.size(); ++v) {
+                if (rings.is_border(v)) continue;
                 double const share = 0.5 + (h[v] - 0.5 * (r.low + r.high)) / width;
                 // Straight in where the surface is flat; shorter, the more it is bent.
                 double const turn = std::fabs(h[v]) / std::max({std::fabs(r.low), std::fabs(r.high), 0.005 / edge});
@@ -153,6 +154,24 @@ TEST_CASE("the wear by one particle falls off with the distance as equation 9.6 
         double const nearest = std::min(length(s.positions[v] - drop), length(s.positions[v] - drop - vec3{0.05, 0, 0.05}));
         CHECK(more.wear()[v] == Approx(std::max(1 - nearest / influence, 0.0) * s.mean_edge_length() / 20).epsilon(1e-12));
     }
+}
+
+TEST_CASE("what curvature takes is booked at the vertices that moved, and at no others") {
+    triangle_surface const s = torus_surface(40, 24, 0.1).mesh;
+    hydraulic_run run(s, still{.at = {s.positions[100], s.positions[500]}}, curvature_erosion<>{.influence = 0.15});
+    sediment_ledger const l = run.run(3).ledger;
+    std::vector<double> const net = run.sediment();
+    double sum = 0;
+    std::size_t moved = 0;
+    for (std::size_t v = 0; v < net.size(); ++v) {
+        sum += net[v];
+        if (run.wear()[v] == 0) CHECK(net[v] == 0);
+        if (run.wear()[v] > 1e-6) CHECK(net[v] < 0);
+        moved += run.wear()[v] > 0 ? 1U : 0U;
+    }
+    CHECK(moved > 10);
+    CHECK(moved < 200);
+    CHECK(-sum == Approx(l.eroded).epsilon(1e-12));
 }
 
 TEST_CASE("shear is the speed along the surface over the distance") {

@@ -44,7 +44,7 @@ public:
     hydraulic_run(M const& mesh, Fluid fluid, Process process, hydraulic_options const& options = {})
         : process_(std::move(process)), options_((options.validate(), options)), fluid_(std::move(fluid)),
           surface_(triangle_surface::copy_of(mesh)), input_(surface_.positions), input_hash_(detail::surface_hash(surface_)),
-          mean_edge_(surface_.mean_edge_length()) {
+          mean_edge_(surface_.mean_edge_length()), border_(surface_.positions, surface_.triangles) {
         if constexpr (requires { process_.validate(); }) process_.validate();
         std::size_t const n = surface_.positions.size();
         books_.due.assign(n, 0);
@@ -162,7 +162,6 @@ private:
             ++report_.iterations;
             return;
         }
-        border_.look(surface_.positions, surface_.triangles, rings_);
         stand_walls();
         double const dt = ahead_ > 0 ? ahead_ : advanced(fluid_.step(walls_[0], threads));
         // What the user wrote may throw up to here and no further; the next run then goes on behind the fluid's step.
@@ -229,8 +228,8 @@ private:
                                                  (report_.iterations / options_.check_every % detail::most_looks_spared == 0 ||
                                                   detail::many_have_gone(clear_, given_)));
         if (anew) {
+            given_.assign(n, 0.0);  // first: where memory runs out, the size of the other tells
             clear_.assign(n, -1.0);
-            given_.assign(n, 0.0);
         }
         wet_.assign(n, 0);
         if constexpr (exchange_rule<Process>) {
@@ -321,12 +320,12 @@ private:
             vec3 const b1{next_[t[1]] - next_[t[0]]};
             vec3 const c1{next_[t[2]] - next_[t[0]]};
             vec3 const areas = cross(b0, c0) + cross(vec3{b0 + b1}, vec3{c0 + c1}) + cross(b1, c1);
-            vec3 ways{0, 0, 0};
-            for (std::uint32_t const c : t) ways += was[c] - next_[c];
-            std::int64_t const taken = unit_.fixed(dot(ways, areas) / 36);
-            books_.eroded += taken;
-            books_.left += taken;
-            for (std::size_t k = 0; k < 3; ++k) sediment_[t[k]] -= detail::sediment_exchange::third(taken, k);
+            for (std::uint32_t const c : t) {
+                std::int64_t const taken = unit_.fixed(dot(was[c] - next_[c], areas) / 36);  // by the corner that moved
+                books_.eroded += taken;
+                books_.left += taken;
+                sediment_[c] -= taken;
+            }
         }
     }
 

@@ -71,8 +71,8 @@ public:
     void open(std::size_t vertices) {
         out_.assign(vertices, 0);
         in_.assign(vertices, 0);
-        out_share_.assign(vertices, 1.0F);
-        in_share_.assign(vertices, 1.0F);
+        out_share_.assign(vertices, 1.0);
+        in_share_.assign(vertices, 1.0);
     }
     /// A corner's part of what is taken from a face: thirds that add up, the rest going to the first corners.
     [[nodiscard]] static std::int64_t third(std::int64_t taken, std::size_t corner) noexcept {
@@ -101,22 +101,22 @@ public:
     [[nodiscard]] bool asked(std::size_t v) const noexcept { return out_[v] != 0 || in_[v] != 0; }
     /// What of a corner's part is granted: of its sign, and no more.
     [[nodiscard]] std::int64_t grant(std::uint32_t vertex, std::int64_t part) const noexcept {
-        float const share = (part > 0 ? out_share_ : in_share_)[vertex];
+        double const share = (part > 0 ? out_share_ : in_share_)[vertex];
         if (share >= 1) return part;
-        double const size = std::floor(static_cast<double>(part > 0 ? part : -part) * static_cast<double>(share));
+        double const size = std::floor(static_cast<double>(part > 0 ? part : -part) * share);
         return part > 0 ? static_cast<std::int64_t>(size) : -static_cast<std::int64_t>(size);
     }
 
 private:
-    [[nodiscard]] static float share(std::int64_t room, std::int64_t asked) noexcept {
+    [[nodiscard]] static double share(std::int64_t room, std::int64_t asked) noexcept {
         if (asked <= room) return 1;
-        return room > 0 ? static_cast<float>(static_cast<double>(room) / static_cast<double>(asked)) : 0.0F;
+        return room > 0 ? static_cast<double>(room) / static_cast<double>(asked) : 0.0;
     }
 
     std::vector<std::int64_t> out_{};  ///< asked of the vertex
     std::vector<std::int64_t> in_{};   ///< offered to it
-    std::vector<float> out_share_{};
-    std::vector<float> in_share_{};
+    std::vector<double> out_share_{};
+    std::vector<double> in_share_{};
 };
 
 /// Moves vertices by the volume that they owe or are owed [thesis, 8.3, signed].

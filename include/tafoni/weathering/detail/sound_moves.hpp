@@ -23,7 +23,7 @@ namespace tafoni::detail {
 struct vertex_room {
     vec3 sum{0, 0, 0};   ///< of normals by twice the area, where it may go: six times the volume per length along a is a . sum
     double area = 0;     ///< |sum|
-    double sheer = 0;    ///< |sum| with the coordinates that a border vertex keeps
+    double sheer = 0;    ///< |sum| with what leads out of the planes that a border vertex keeps
     double whole = 0;    ///< twice the area around; sheer / whole is the mean cosine between faces and normal
     double lowest = 0;   ///< least altitude of a triangle over the side opposite the vertex, length unit
     double clear = std::numeric_limits<double>::infinity();  ///< way before other walls could be met, length unit
@@ -42,7 +42,7 @@ struct moving_surface {
     std::span<std::array<std::uint32_t, 3> const> triangles;
     vertex_rings const& rings;
     std::span<double> clear{};  ///< way that each vertex has left, below 0 none; empty: any
-    std::span<axis_bits const> kept{};  ///< coordinates that vertices keep; empty: none
+    kept_ways kept{};            ///< what border vertices keep
 };
 
 /// Knows the triangles of a surface whose vertices move one after the other, and refuses what
@@ -92,8 +92,8 @@ public:
             if (lowest < 0 || height < lowest) lowest = height;
         }
         out.area = out.sheer = length(out.sum);
-        if (!s.kept.empty() && s.kept[v] != 0) {
-            out.sum = without(out.sum, s.kept[v]);
+        if (border_hold const* kept = s.kept.of(v)) {
+            out.sum = without(out.sum, *kept);
             out.area = length(out.sum);
         }
         if (!s.clear.empty()) out.clear = std::max(s.clear[v], 0.0);

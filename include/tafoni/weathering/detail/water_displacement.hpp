@@ -30,10 +30,10 @@ namespace tafoni::detail {
 class water_displacement {
 public:
     /// Puts into `next` where the vertices go that are within the influence of the water that touches, on its side of the
-    /// wall; `mean_edge` and `most` in length units, `kept` the coordinates that border vertices keep or empty.
+    /// wall; `mean_edge` and `most` in length units, `kept` what border vertices keep.
     /// O(vertices + faces + water).
     template <class Process, executor E>
-    void find(Process const& process, surface_view const& surface, std::span<axis_bits const> kept, water_contacts const& water,
+    void find(Process const& process, surface_view const& surface, kept_ways const& kept, water_contacts const& water,
               double mean_edge, double most, std::vector<vec3>& next, E const& threads) {
         std::size_t const n = surface.positions.size();
         double const influence = process.influence > 0 ? process.influence : mean_edge;
@@ -77,7 +77,7 @@ public:
                 vec3 way = surface.rings->is_border(v)
                                ? direction(surface, detail::neighbors_along_border(*surface.rings, surface.triangles, v, along), v, curvature)
                                : direction(surface, surface.rings->neighbors(v), v, curvature);
-                if (!kept.empty() && kept[v] != 0) way = kept_in(way, normal_[v], kept[v]);
+                if (border_hold const* held = kept.of(v)) way = kept_in(way, normal_[v], *held);
                 double const strength = process.power == 1 ? share : share > 0 ? elementary::pow(share, process.power) : 0.0;
                 double const hard = std::max(process.durability(p), 1e-3);
                 double const d = std::min(strength / hard, 1.0) * most * nearness;
@@ -98,8 +98,15 @@ private:
     [[nodiscard]] vec3 direction(surface_view const& surface, std::span<std::uint32_t const> around, std::size_t v, double curvature) const {
         vec3 const& p = surface.positions[v];
         vec3 laplacian{0, 0, 0};
-        for (std::uint32_t const w : around) laplacian += surface.positions[w] - p;
+        double square = 0;
+        for (std::uint32_t const w : around) {
+            vec3 const edge{surface.positions[w] - p};
+            laplacian += edge;
+            square += squared_length(edge);
+        }
         if (!around.empty()) laplacian /= static_cast<double>(around.size());
+        // At the middle of its neighbours, as on a straight border, but for rounding: straight in.
+        if (squared_length(laplacian) <= 1e-18 * square) laplacian = vec3{-normal_[v][0], -normal_[v][1], -normal_[v][2]};
         vec3 way = blended_direction{}.direction({.position = p, .laplacian = laplacian, .normal = normal_[v], .curvature = curvature});
         double const out = tafoni::dot(way, normal_[v]);
         if (out > 0) {
@@ -107,9 +114,9 @@ private:
         }
         return way;
     }
-    /// As deep into the surface as `way`, without the coordinates that are kept; not at all where the surface runs along
-    /// the plane of the border.
-    [[nodiscard]] static vec3 kept_in(vec3 const& way, vec3 const& normal, axis_bits kept) noexcept {
+    /// As deep into the surface as `way`, in the planes that are kept; not at all where the surface runs along the plane of
+    /// the border.
+    [[nodiscard]] static vec3 kept_in(vec3 const& way, vec3 const& normal, border_hold const& kept) noexcept {
         vec3 const within = without(normal, kept);
         vec3 const held = without(way, kept);
         double const free = squared_length(within);
