@@ -189,6 +189,7 @@ void affected(benchmark::State& state) {
         contacts = 0;
         order.sort(walls, drops.size(), [&](std::size_t i) -> vec3 const& { return drops[i]; }, inline_executor{});
         for (std::size_t k = 0; k < drops.size(); ++k) {
+            order.look_ahead(walls, k);
             walls.for_each_contact(drops[order[k]], 0.5, [&](boundary_contact const&) { ++contacts; });
         }
         benchmark::DoNotOptimize(contacts);

@@ -59,15 +59,15 @@ triangle_surface rolling_ground(std::uint32_t n) {
 }
 std::uint32_t side_of(benchmark::State const& state) { return static_cast<std::uint32_t>(std::sqrt(static_cast<double>(state.range(0)))); }
 
-/// Particles that stand still over rolling ground, an eighth of them within reach.
+/// Particles that stand still over rolling ground, no higher than `height`; they reach 0.5.
 struct hanging {
     std::vector<vec3> at{};
-    explicit hanging(std::uint32_t n) {
+    explicit hanging(std::uint32_t n, std::uint32_t count, double height) {
         stream random(3, 0, 0);
-        for (std::uint32_t k = 0; k < 2 * n * n; ++k) {
+        for (std::uint32_t k = 0; k < count; ++k) {
             double const x = random.uniform(1, n - 2.0);
             double const y = random.uniform(1, n - 2.0);
-            double const z = random.uniform(0, 4);
+            double const z = random.uniform(0, height);
             at.push_back(vec3{x, y, 3 * std::sin(0.13 * x) * std::cos(0.11 * y) + z});
         }
     }
@@ -77,10 +77,10 @@ struct hanging {
     double reach() const { return 0.5; }
 };
 
-void affected(benchmark::State& state) {
+void affected(benchmark::State& state, double particles, double height) {
     std::uint32_t const n = side_of(state);
     triangle_surface const mesh = rolling_ground(n);
-    hanging const water(n);
+    hanging const water(n, static_cast<std::uint32_t>(particles * n * n), height);
     mesh_boundary const walls(mesh.positions, mesh.triangles, water.reach());
     thread_pool const pool(static_cast<std::size_t>(state.range(1)));
     detail::water_contacts contacts;
@@ -143,7 +143,12 @@ BENCHMARK(ground<curvature_erosion<>>)->Name("weathering/hydraulic_run/ground/cu
     ->Arg(16000)->Arg(32000)->Arg(64000)->Complexity(benchmark::oN)->Unit(benchmark::kMillisecond);
 BENCHMARK(ground<partheniades_erosion>)->Name("weathering/hydraulic_run/ground/shear/rain")->ArgName("n")
     ->Arg(16000)->Arg(32000)->Arg(64000)->Complexity(benchmark::oN)->Unit(benchmark::kMillisecond);
-BENCHMARK(affected)->Name("weathering/hydraulic_run/affected")->ArgNames({"n", "threads"})
+BENCHMARK_CAPTURE(affected, , 2, 4)->Name("weathering/hydraulic_run/affected")->ArgNames({"n", "threads"})
     ->Args({17500, 1})->Args({35000, 1})->Args({70000, 1})->Complexity(benchmark::oN)->Unit(benchmark::kMillisecond);
-BENCHMARK(affected)->Name("weathering/hydraulic_run/affected_on_threads")->ArgNames({"n", "threads"})
+BENCHMARK_CAPTURE(affected, , 2, 4)->Name("weathering/hydraulic_run/affected_on_threads")->ArgNames({"n", "threads"})
     ->Args({35000, 2})->Args({35000, 4})->Unit(benchmark::kMillisecond)->UseRealTime();
+// All particles touch; a twentieth of them does; ten times as many; a tenth.
+BENCHMARK_CAPTURE(affected, , 2, 0.5)->Name("weathering/hydraulic_run/affected_under_water")->ArgNames({"n", "threads"})->Args({35000, 1})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(affected, , 2, 10)->Name("weathering/hydraulic_run/affected_by_rain")->ArgNames({"n", "threads"})->Args({35000, 1})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(affected, , 20, 4)->Name("weathering/hydraulic_run/affected_by_many")->ArgNames({"n", "threads"})->Args({35000, 1})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(affected, , 0.2, 4)->Name("weathering/hydraulic_run/affected_by_few")->ArgNames({"n", "threads"})->Args({35000, 1})->Unit(benchmark::kMillisecond);

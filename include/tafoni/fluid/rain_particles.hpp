@@ -96,6 +96,7 @@ public:
         next_.resize(drops_.size());
         threads.for_blocks(drops_.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
+                order_.look_ahead(walls, k);
                 drop& d = next_[order_[k]];
                 d = drops_[order_[k]];
                 if (options_.frame > 0) {

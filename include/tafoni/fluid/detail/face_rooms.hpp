@@ -62,6 +62,18 @@ public:
                balls_.capacity() * sizeof(ball_pack) + entries_.capacity() * sizeof(entry) + least_.capacity() * sizeof(float);
     }
 
+    /// Asks memory for the first packs of a room.
+    void fetch(std::uint32_t r) const noexcept {
+#if defined(__GNUC__)
+        std::size_t const begin = rooms_[r].begin;
+        std::size_t const end = std::min<std::size_t>(rooms_[std::size_t{r} + 1].begin, begin + 4);
+        for (std::size_t b = begin; b < end; ++b) {
+            __builtin_prefetch(balls_.data() + b);
+            __builtin_prefetch(faces_.data() + ball_pack::count * b);
+        }
+#endif
+    }
+
     /// How far a corner may be from where the cells were filled for.
     void drift(double far) noexcept {
         drift_ = static_cast<float>(far * inverse_) * (1 + 1e-5F);

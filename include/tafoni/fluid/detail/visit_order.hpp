@@ -53,8 +53,17 @@ public:
     /// How many there are before the first that may touch the walls.
     [[nodiscard]] std::size_t away() const noexcept { return away_; }
     [[nodiscard]] std::size_t operator[](std::size_t k) const noexcept { return order_[k]; }
+    /// Tells the walls which block is asked about a few particles after the k-th, so that it is on its way from memory.
+    template <class Walls>
+    void look_ahead(Walls const& walls, std::size_t k) const noexcept {
+        if constexpr (requires(vec3 const& p) { walls.block_of(p); walls.fetch(std::size_t{0}); }) {
+            if (k + ahead < order_.size()) walls.fetch(block_[order_[k + ahead]]);
+        }
+    }
 
 private:
+    static constexpr std::size_t ahead = 6;
+
     std::size_t away_ = 0;
     std::vector<std::uint32_t> order_{};
     std::vector<std::uint32_t> block_{};

@@ -45,6 +45,7 @@ public:
             out.contacts.clear();
             out.points.clear();
             for (std::size_t k = begin; k < end; ++k) {
+                order_.look_ahead(walls, away + k);
                 std::size_t const i = order_[away + k];
                 vec3 const p = fluid.position(i);
                 std::size_t const before = out.contacts.size();
