@@ -4,6 +4,7 @@
 #define TAFONI_WEATHERING_HYDRAULIC_CHECKPOINT_HPP
 
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/geometry/refined_origins.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/weathering/detail/checkpoint_bytes.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
@@ -48,6 +49,7 @@ struct hydraulic_state {
     double ahead = 0;  ///< s that the fluid is ahead of the surface by
     std::vector<double> clear{};  ///< way that vertices have to other walls, below 0 unknown; or empty
     std::vector<double> given{};  ///< that they had when it was found; as many
+    refined_origins origins{};
 };
 
 /// Options and process; fields as they answer at the vertices of the input. O(vertices).
@@ -77,7 +79,7 @@ template <class Process>
 }
 
 inline constexpr std::uint64_t hydraulic_checkpoint_magic = 0x6479682D66617400ULL;  // "\0taf-hyd"
-inline constexpr std::uint64_t hydraulic_checkpoint_version = 2;
+inline constexpr std::uint64_t hydraulic_checkpoint_version = 3;
 
 /// Magic, version, hashes of the input and of the parameters, state, fluid, hash. O(vertices + faces + particles).
 template <class Fluid>
@@ -122,15 +124,20 @@ template <class Fluid>
     out.put(std::uint64_t{s.clear.size()});
     for (double const c : s.clear) out.put_real(c);
     for (double const c : s.given) out.put_real(c);
+    for (auto const& m : s.origins.midpoints) {
+        for (std::uint32_t const v : m) out.put(std::uint64_t{v}, 4);
+    }
+    for (face_index const f : s.origins.face) out.put(std::uint64_t{f.value}, 4);
     fluid.save(out);
     out.put(byte_hash(out.bytes()));
     return std::move(out.bytes());
 }
 
-/// Checks everything that is read. `inputs` is the number of vertices that the run began with.
+/// Checks everything that is read. `inputs` and `faces` are the numbers of vertices and faces that the run began with.
 class hydraulic_checkpoint_reader {
 public:
-    hydraulic_checkpoint_reader(std::span<std::byte const> bytes, std::size_t inputs) : bytes_(bytes), in_(bytes, who), inputs_(inputs) {}
+    hydraulic_checkpoint_reader(std::span<std::byte const> bytes, std::size_t inputs, std::size_t faces)
+        : bytes_(bytes), in_(bytes, who), inputs_(inputs), input_faces_(faces) {}
 
     /// Also loads `fluid`, which is lost where this throws.
     /// \throws io_error  `wrong_format`, `unsupported`, `checkpoint_mismatch`, `truncated`, `bad_syntax`. O(bytes).
@@ -213,12 +220,25 @@ private:
         for (double& c : s.clear) c = in_.get_real();
         s.given.resize(s.clear.size());
         for (double& c : s.given) c = in_.get_real();
+        s.origins.midpoints.resize(s.surface.positions.size() - inputs_);
+        for (std::size_t k = 0; k < s.origins.midpoints.size(); ++k) {
+            auto& [a, b] = s.origins.midpoints[k];
+            a = static_cast<std::uint32_t>(in_.get(4));
+            b = static_cast<std::uint32_t>(in_.get(4));
+            if (!(a < b && b < inputs_ + k)) bad("a vertex comes from one that is not before it");
+        }
+        s.origins.face.resize(s.surface.triangles.size());
+        for (face_index& f : s.origins.face) {
+            f = face_index{static_cast<std::uint32_t>(in_.get(4))};
+            if (f.value >= input_faces_) bad("a face comes from none");
+        }
         return s;
     }
 
     std::span<std::byte const> bytes_;
     byte_reader in_;
     std::size_t inputs_;
+    std::size_t input_faces_;
 };
 
 }  // namespace detail

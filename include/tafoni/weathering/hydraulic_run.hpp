@@ -8,10 +8,12 @@
 #include <tafoni/fluid/concepts.hpp>
 #include <tafoni/fluid/mesh_boundary.hpp>
 #include <tafoni/geometry/refine_faces.hpp>
+#include <tafoni/geometry/refined_origins.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 #include <tafoni/weathering/detail/held_borders.hpp>
 #include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sediment.hpp>
+#include <tafoni/weathering/detail/swept_volume.hpp>
 #include <tafoni/weathering/detail/water_contacts.hpp>
 #include <tafoni/weathering/detail/wall_clearance.hpp>
 #include <tafoni/weathering/detail/water_displacement.hpp>
@@ -35,8 +37,11 @@ namespace tafoni {
 /// particle's reach, pi (reach^2 - distance^2). With `curvature_erosion` the vertices within the influence of a
 /// particle that touches go by (1 - distance / influence) H^n e / x, never outwards. The state depends on
 /// mesh, fluid, process and options only, never on threads.
-template <hydraulic_process Process, particle_fluid Fluid>
+template <class Process, class Fluid>
 class hydraulic_run {
+    static_assert(hydraulic_process<Process>);
+    static_assert(particle_fluid<Fluid>);
+
 public:
     /// O(vertices + faces). \throws invalid_input  for a mesh or parameters out of range; `unsupported` with the first
     /// face that is no triangle: `triangulate` makes some of it.
@@ -47,11 +52,13 @@ public:
           mean_edge_(surface_.mean_edge_length()), border_(surface_.positions, surface_.triangles) {
         if constexpr (requires { process_.validate(); }) process_.validate();
         std::size_t const n = surface_.positions.size();
+        input_faces_ = surface_.triangles.size();
+        origins_ = refined_origins(input_faces_);
         books_.due.assign(n, 0);
         wear_.assign(n, 0.0);
         flow_.assign(n, 0);
         sediment_.assign(n, 0);
-        unit_ = detail::volume_unit(largest_move());
+        unit_ = detail::volume_unit(detail::largest_sweep(surface_) * (mean_edge_ / options_.step_divisor));
     }
 
     /// Adds iterations. Progress under the stage "weather"; an observer's `stop` ends the run after an iteration.
@@ -78,6 +85,9 @@ public:
 
     /// Vertices of the input keep their numbers; those that refinement added follow.
     [[nodiscard]] triangle_surface const& surface() const noexcept { return surface_; }
+    /// The edges that added vertices came into the middle of, and the input's face of each face: so that texture coordinates
+    /// and other numbers of the host follow; `origins().carried(u)`.
+    [[nodiscard]] refined_origins const& origins() const noexcept { return origins_; }
     [[nodiscard]] Fluid const& fluid() const noexcept { return fluid_; }
     [[nodiscard]] hydraulic_report const& report() const noexcept { return report_; }
     /// Way that each vertex has moved, length unit.
@@ -98,7 +108,7 @@ public:
     /// The state as bytes, the same on every machine. O(vertices + faces + particles).
     [[nodiscard]] std::vector<std::byte> checkpoint() const requires saved_fluid<Fluid> {
         return detail::write_checkpoint({.surface = surface_, .wear = wear_, .flow = flow_, .sediment = sediment_, .books = books_,
-                                         .report = report_, .ahead = ahead_, .clear = clear_, .given = given_},
+                                         .report = report_, .ahead = ahead_, .clear = clear_, .given = given_, .origins = origins_},
                                         fluid_, input_hash_, detail::parameter_hash(process_, options_, input_));
     }
     /// Goes on from a checkpoint of a run on the same mesh with the same process, options and fluid: the same bits as
@@ -106,7 +116,7 @@ public:
     /// fluid's parameters are others; nothing is changed then.
     void resume(std::span<std::byte const> bytes) requires saved_fluid<Fluid> {
         Fluid fluid = fluid_;
-        detail::hydraulic_state s = detail::hydraulic_checkpoint_reader(bytes, input_.size())
+        detail::hydraulic_state s = detail::hydraulic_checkpoint_reader(bytes, input_.size(), input_faces_)
                                         .read(fluid, input_hash_, detail::parameter_hash(process_, options_, input_));
         s.report.ledger = {.eroded = unit_.volume(s.books.eroded), .deposited = unit_.volume(s.books.deposited),
                            .carried = unit_.volume(s.books.carried()), .left = unit_.volume(s.books.left)};
@@ -121,6 +131,7 @@ public:
         ahead_ = s.ahead;
         clear_ = std::move(s.clear);
         given_ = std::move(s.given);
+        origins_ = std::move(s.origins);
         walls_.clear();
         fresh_ = false;
     }
@@ -128,17 +139,6 @@ public:
 private:
     [[nodiscard]] detail::moving_surface moving() noexcept {
         return {.positions = surface_.positions, .triangles = surface_.triangles, .rings = rings_, .clear = clear_, .kept = border_.kept()};
-    }
-    /// The largest volume that a vertex moves by in an iteration. O(vertices + faces).
-    [[nodiscard]] double largest_move() const {
-        std::vector<double> around(surface_.positions.size(), 0.0);
-        double largest = 0;
-        for (auto const& t : surface_.triangles) {
-            vec3 const& a = surface_.positions[t[0]];
-            double const twice = length(cross(vec3{surface_.positions[t[1]] - a}, vec3{surface_.positions[t[2]] - a}));
-            for (std::uint32_t const v : t) largest = std::max(largest, around[v] += twice);
-        }
-        return largest / 6 * (mean_edge_ / options_.step_divisor);
     }
     [[nodiscard]] std::uint64_t id_of(std::size_t i) const {
         if constexpr (requires { { fluid_.id(i) } -> std::same_as<std::uint64_t>; }) {
@@ -169,11 +169,11 @@ private:
         if (walls_[0].reach() != fluid_.reach()) stand_walls();
         double const most = mean_edge_ / options_.step_divisor;  // of the input: what grows or is split later changes no limit
         detail::volume_sum gone = 0;
-        if constexpr (exchange_rule<Process>) {
+        if constexpr (!detail::is_curvature_erosion<Process>) {
             gone = loads_now_.follow(books_.load, fluid_.particle_count(), [&](std::size_t i) { return id_of(i); });
         }
         contacts_.find(process_, fluid_, walls_[0], loads_now_, unit_, dt, threads);
-        if constexpr (!exchange_rule<Process>) {
+        if constexpr (detail::is_curvature_erosion<Process>) {
             displacement_.find(process_, {.positions = surface_.positions, .triangles = surface_.triangles, .rings = &rings_},
                                border_.kept(), contacts_, mean_edge_, most, next_, threads);
         }
@@ -207,7 +207,7 @@ private:
 
     void wear(double most, detail::volume_sum gone) {
         book_contacts(most);
-        if constexpr (exchange_rule<Process>) {
+        if constexpr (!detail::is_curvature_erosion<Process>) {
             books_.left += gone;
             std::swap(books_.load, loads_now_);
             settle_(moving(), moves_, exchange_, unit_, most, books_, wear_, sediment_);
@@ -232,7 +232,7 @@ private:
             clear_.assign(n, -1.0);
         }
         wet_.assign(n, 0);
-        if constexpr (exchange_rule<Process>) {
+        if constexpr (!detail::is_curvature_erosion<Process>) {
             for (std::size_t v = 0; v < n; ++v) wet_[v] = books_.due[v] != 0 ? 1 : 0;
             contacts_.for_each([&](detail::water_contacts::contact const& c) {
                 for (std::uint32_t const v : surface_.triangles[c.face]) wet_[v] = 1;
@@ -280,7 +280,7 @@ private:
     /// What the contacts ask for and get, less and less of it going round.
     void book_contacts(double most) {
         wet_.assign(surface_.positions.size(), 0);
-        if constexpr (exchange_rule<Process>) {
+        if constexpr (!detail::is_curvature_erosion<Process>) {
             exchange_.open(surface_.positions.size());
             contacts_.for_each([&](detail::water_contacts::contact const& c) { exchange_.ask(surface_.triangles[c.face], c.taken); });
             exchange_.close(moving(), moves_, unit_, most, books_);
@@ -291,7 +291,7 @@ private:
                 ++flow_[v];
                 wet_[v] = 1;
             }
-            if constexpr (exchange_rule<Process>) {
+            if constexpr (!detail::is_curvature_erosion<Process>) {
                 std::int64_t& load = loads_now_.all()[c.particle].units;
                 // What was not granted before cannot be laid down now.
                 std::int64_t const taken = std::max(c.taken, -load);
@@ -314,12 +314,7 @@ private:
             bool same = true;
             for (std::uint32_t const c : t) same = same && next_[c] == was[c];
             if (same) continue;
-            // Simpson's rule is exact: the area vector is quadratic in time.
-            vec3 const b0{was[t[1]] - was[t[0]]};
-            vec3 const c0{was[t[2]] - was[t[0]]};
-            vec3 const b1{next_[t[1]] - next_[t[0]]};
-            vec3 const c1{next_[t[2]] - next_[t[0]]};
-            vec3 const areas = cross(b0, c0) + cross(vec3{b0 + b1}, vec3{c0 + c1}) + cross(b1, c1);
+            vec3 const areas = detail::swept_areas(t, was, next_);
             for (std::uint32_t const c : t) {
                 std::int64_t const taken = unit_.fixed(dot(was[c] - next_[c], areas) / 36);  // by the corner that moved
                 books_.eroded += taken;
@@ -336,6 +331,8 @@ private:
             return (wet_[a] != 0 || wet_[b] != 0) && squared_length(p[a] - p[b]) > options_.refine_length * options_.refine_length;
         });
         if (fine.midpoints.empty()) return;
+        refined_origins origins = origins_;
+        origins.follow(fine);
         add_midpoints(surface_.positions, fine.midpoints);
         for (auto const& m : fine.midpoints) {
             wear_.push_back(0.5 * wear_[m[0]] + 0.5 * wear_[m[1]]);
@@ -344,7 +341,8 @@ private:
         books_.due.resize(surface_.positions.size(), 0);
         sediment_.resize(surface_.positions.size(), 0);
         report_.vertices_added += fine.midpoints.size();
-        surface_.triangles = std::move(fine.triangles);  // last: `take_back` does not know the old ones
+        surface_.triangles = std::move(fine.triangles);  // last: `take_back` does not know the old ones, nor origins
+        origins_ = std::move(origins);
         fresh_ = false;
     }
 
@@ -366,6 +364,8 @@ private:
     triangle_surface surface_;
     std::vector<vec3> input_;             ///< positions as given
     std::uint64_t input_hash_ = 0;
+    std::size_t input_faces_ = 0;
+    refined_origins origins_{};
     vertex_rings rings_{};
     bool fresh_ = false;
     double mean_edge_ = 0;                ///< of the input
