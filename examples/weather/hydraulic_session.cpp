@@ -212,7 +212,7 @@ bool hydraulic_session::run() {
     input_ = load_surface(a_.input, a_.seed);
     if (!(input_.size >= 1e-60 && input_.size <= 1e60)) {
         detail::fail<invalid_input>(errc::out_of_range, a_.input + ": the model is " + text_of(input_.size) + " long; water runs over models of 1e-60 to 1e60 only",
-                                    {.kind = entity::file, .value = input_.size, .file = a_.input});
+                                    {.kind = entity::file, .file = a_.input, .value = input_.size});
     }
     progress_.context().tick("read", 1);
     settle();

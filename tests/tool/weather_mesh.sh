@@ -123,7 +123,7 @@ rock=builtin:bust:resolution=26
     # resumed runs equal uninterrupted ones
     expect 0 half "$weather" curvature $rock -o resumed $part --iterations 20 --checkpoint half.bin
     expect 0 rest "$weather" curvature $rock -o resumed $part --iterations 40 --resume half.bin --checkpoint end3
-    for file in weathered.vtp weathered.obj map.txt snapshots; do
+    for file in weathered.vtp weathered.obj map.txt history.csv snapshots; do
         diff -r first/$file resumed/$file > diff.log || complain "a resumed run ends with another $file"
     done
     cmp end1 end3 || complain "a resumed run ends with another checkpoint"
@@ -204,7 +204,7 @@ for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300";
     cmp "$kind".bin "$kind"_3.bin || complain "$kind: checkpoints differ"
     expect 0 "$kind"_half "$weather" hydraulic $flow -o "$kind"_on $water --iterations 30 --checkpoint half.bin
     expect 0 "$kind"_rest "$weather" hydraulic $flow -o "$kind"_on $water --iterations 60 --resume half.bin --checkpoint "$kind"_on.bin
-    for file in weathered.vtp weathered.obj snapshots; do
+    for file in weathered.vtp weathered.obj history.csv snapshots; do
         diff -r "$kind/$file" "$kind"_on/$file > diff.log || complain "$kind: a resumed run ends with another $file"
     done
     cmp "$kind".bin "$kind"_on.bin || complain "$kind: a resumed run ends with another checkpoint"
@@ -213,15 +213,19 @@ for case in "partheniades rain 600" "curvature rain 600" "partheniades sph 300";
     for other in "$rock" "$wet" "--step 7" "--refine 0.5" "--particles 17" "--frame 0.003" "--check-every 3" "--durability 2" "--gravity 0,0,-9"; do
         case $other in --particles*) drops="--model $1 --fluid $2" ;; *) drops=$water ;; esac
         expect 1 other "$weather" hydraulic $flow -o none $drops --iterations 60 --resume half.bin $other
+        says other "half.bin: "
     done
     expect 2 too_few "$weather" hydraulic $flow -o none $water --iterations 7 --resume half.bin
     head -c 1000 half.bin > cut.bin
     expect 1 truncated "$weather" hydraulic $flow -o none $water --iterations 60 --resume cut.bin
+    says truncated "cut.bin: "
     expect 1 foreign "$weather" hydraulic $flow -o none $water --iterations 60 --resume end1
+    says foreign "end1: "
     [ ! -e none ] || complain "a refused resume of water made its folder"
     ledger "$kind"
     for key in schema version process seed parameters gravity emitter radius adhesion frame k tau_c influence check_every keep threads stopped repaired iterations time \
-        particles contacts ledger eroded deposited carried left vertices_added largest_wear seconds read weather write; do
+        particles contacts ledger eroded deposited carried left vertices_added largest_wear volume_before volume_after unused \
+        self_intersections seconds read weather check write; do
         grep -q "\"$key\":" "$kind/report.json" || complain "$kind: report.json has no $key"
     done
     for channel in curvature wear flow sediment; do
@@ -275,6 +279,39 @@ for cell in 10 160; do
     # On smooth ground the stream is out of the model sooner, with the rock that it took.
     holds "$(number smooth$cell friction) == 0 && $(number river$cell friction) > 0 && $(number smooth$cell left) > 10 * $(number river$cell left)" smooth$cell
 done
+
+# options without an effect are named on stderr and in the report, and refuse nothing
+unused() { # folder options as in the report
+    [ "$(tr -d ' \n' < "$1/report.json" | sed 's/.*"unused":\[\([^]]*\)\].*/\1/')" = "$2" ] || complain "$1: the report does not name $2 as unused"
+}
+small="builtin:bust:resolution=12 --progress none --format obj"
+# shellcheck disable=SC2086
+{
+    expect 0 idle "$weather" hydraulic $small -o idle --particles 50 --iterations 5 --velocity 0,0,-1 --model partheniades --influence 0.5 --viscosity 0.01
+    says idle "^weather: note: --viscosity has no effect without --fluid sph$"
+    says idle "^weather: note: --influence has no effect without --model curvature$"
+    unused idle '"--viscosity","--influence"'
+    expect 0 idle_shear "$weather" hydraulic $small -o idle_shear --particles 50 --iterations 5 --model curvature --a 2 --K 3 --m 0.5 --k 1 --tau-c 2
+    for option in a K m k tau-c; do says idle_shear "note: --$option has no effect without --model partheniades"; done
+    expect 0 idle_rain "$weather" hydraulic $small -o idle_rain --particles 50 --iterations 5 --fluid sph --lifetime 3 --adhesion 1 --gravity 0,0,-1 --up y
+    for option in lifetime adhesion; do says idle_rain "note: --$option has no effect without --fluid rain"; done
+    says idle_rain "note: --up has no effect with --gravity"
+    expect 0 idle_ball "$weather" curvature $small -o idle_ball --iterations 2 --ball 0.2 --retries 3
+    says idle_ball "note: --ball has no effect without --estimator bubble"
+    says idle_ball "note: --retries has no effect without --check-every"
+    unused idle_ball '"--ball","--retries"'
+    expect 0 idle_fold "$weather" wrinkles $small -o idle_fold --enlarge 3,0.2,1 --profile groove
+    says idle_fold "note: --profile has no effect without --path or --through"
+    expect 0 busy "$weather" hydraulic $small -o busy --particles 50 --iterations 5 --fluid sph --viscosity 0.01
+    unused busy ""
+    grep -q "no effect" busy.log && complain "an option with an effect is said to have none"
+    # water that touches nothing, and water without weight
+    expect 0 dry "$weather" hydraulic $small -o dry --particles 50 --iterations 20 --radius 1e-6
+    says dry "note: no particle touched the mesh.*--emitter.*--radius"
+    expect 0 weightless "$weather" hydraulic $small -o weightless --particles 50 --iterations 3 --fluid sph --gravity 0,0,0
+    expect 0 loud "$weather" hydraulic $small -o loud --particles 50 --iterations 3 --fluid sph --gravity 0,0,0 --sound-speed 7
+    holds "$(number loud sound_speed) == 7 && $(number weightless sound_speed) > 0" loud
+}
 
 # Ctrl-C: 130 and a checkpoint that goes on to the same end
 # shellcheck disable=SC2086
@@ -365,6 +402,36 @@ for file in inside_out.obj sheet.obj hill.asc; do
         grep -qi nan any_input/weathered.obj && complain "$process of $file: a number is none"
     done
 done
+# what is odd about a mesh is counted; what has one side only is refused
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 5 5 5\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' > lone.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0.2\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n' > crowd.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 4 3\nf 1 3 4\n' > twice.obj
+awk 'BEGIN { n = 24; p = 8 * atan2(1, 1)
+    for (i = 0; i < n; ++i) for (s = -0.3; s < 0.4; s += 0.6) { a = p * i / n; print "v", (1 + s * cos(a / 2)) * cos(a), (1 + s * cos(a / 2)) * sin(a), s * sin(a / 2) }
+    for (i = 0; i < n; ++i) { a = 2 * i + 1; c = i + 1 < n ? a + 2 : 2; d = i + 1 < n ? a + 3 : 1; print "f", a, c, d; print "f", a, d, a + 1 } }' > strip.obj
+for process in "curvature --iterations 2" "hydraulic --iterations 5 --particles 50" "wrinkles --path 0,1 --radius 0.5"; do
+    # shellcheck disable=SC2086
+    {
+        for case in "lone isolated_vertices 1" "crowd crowded_edges 1" "twice duplicate_faces 2"; do
+            set -- $case
+            expect 0 odd "$weather" $process $1.obj -o odd --progress none --format ply
+            [ "$(number odd $2)" = "$3" ] || complain "$process: $2 of $1.obj is not $3"
+        done
+        expect 1 strip "$weather" $process strip.obj -o none
+        says strip "strip.obj: .*not orientable"
+    }
+done
+# very large and very small models
+for size in 1e30 1e-30; do
+    awk -v s=$size '/^v / { printf "v %.17g %.17g %.17g\n", $2 * s, $3 * s, $4 * s } /^f /' still/weathered.obj > scaled.obj
+    expect 0 scaled "$weather" hydraulic scaled.obj -o scaled --particles 500 --iterations 60 --progress none --format ply,vtp
+    grep -aq '^property double sediment' scaled/weathered.ply || complain "volumes of a model of $size are no doubles"
+done
+printf 'v 0 0 0\nv 1e150 0 0\nv 0 1e150 0\nv 0 0 1e150\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' > huge.obj
+expect 1 huge "$weather" hydraulic huge.obj -o none
+says huge "huge.obj: the model is 1e+150 long"
+# sph needs no more places than particles
+expect 0 pool "$weather" hydraulic hill.asc -o pool --fluid sph --radius 0.05 --particles 500 --iterations 1 --progress none --format obj
 expect 0 turned "$weather" curvature inside_out.obj -o turned --iterations 1 --progress none
 [ "$(number turned turned_faces)" = 4 ] || complain "turned faces are not counted"
 expect 0 open "$weather" curvature hill.asc -o open --iterations 5 --progress none --format obj
