@@ -109,6 +109,19 @@ public:
     }
     /// Vertex of the input -> vertex now; of collapsed edges both ends lead to one.
     [[nodiscard]] std::span<vertex_index const> new_vertex() const noexcept { return now_.new_vertex; }
+    /// Face of the input -> face now, not valid where it is gone. Faces keep their order and their corners. O(faces of the input).
+    [[nodiscard]] std::vector<face_index> new_face() const {
+        std::vector<face_index> out(input_triangles_.size());
+        std::size_t next = 0;
+        for (std::size_t f = 0; f < out.size() && next < now_.surface.triangles.size(); ++f) {
+            bool same = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                same = same && now_.new_vertex[input_triangles_[f][k]].value == now_.surface.triangles[next][k];
+            }
+            if (same) out[f] = face_index{next++};
+        }
+        return out;
+    }
     /// Length that each vertex has moved along its way, length unit; of a collapsed edge the longer way.
     [[nodiscard]] std::vector<double> wear() const {
         std::vector<double> out = now_.wear;
