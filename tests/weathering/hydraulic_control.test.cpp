@@ -3,6 +3,7 @@
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
 #include <tafoni/geometry/indexed_mesh.hpp>
+#include <tafoni/testing/exchange_laws.hpp>
 #include <tafoni/testing/fluid_archetypes.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
@@ -356,6 +357,24 @@ TEST_CASE("a mesh of polygons that are triangles erodes as they do, one of other
     CHECK(same_state(a, b));
     m.add_face({0, 1, 14, 13});
     CHECK_THROWS_WITH(hydraulic_run(m, swarm(60), rule), Catch::Contains("face 288 has 4 corners"));
+}
+
+TEST_CASE("the least rule erodes, and rules keep their laws") {
+    hydraulic_run run(slope(20, 0), archetypes::fluid(0), archetypes::exchange(0));
+    CHECK(run.run(20).ledger.eroded > 0);
+    CHECK(run.balanced());
+    CHECK(laws::exchange(archetypes::exchange(0)).empty());
+    CHECK(laws::exchange(partheniades_erosion{}).empty());
+    CHECK(laws::exchange(partheniades_erosion{.critical = 3, .exponent = 0.5, .power = 1.7}, 1e-3).empty());
+    struct steep {  // infinite at the face
+        double rate(wash_point const& at) const { return 1 / at.distance; }
+    };
+    CHECK(laws::exchange(steep{}) == std::vector<std::string>{"rates are finite"});
+    struct moody {
+        mutable int asked = 0;
+        double rate(wash_point const&) const { return ++asked; }
+    };
+    CHECK(laws::exchange(moody{}) == std::vector<std::string>{"pure: equal questions get equal answers", "a copy answers as the original"});
 }
 
 TEST_CASE("the least fluid erodes") {

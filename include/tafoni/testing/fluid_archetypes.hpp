@@ -1,9 +1,10 @@
 /// \file
-/// The least particle fluid, and the least walls, that satisfy their concepts.
+/// The least particle fluid, the least walls, and the least rule for what water takes, that satisfy their concepts.
 #ifndef TAFONI_TESTING_FLUID_ARCHETYPES_HPP
 #define TAFONI_TESTING_FLUID_ARCHETYPES_HPP
 
 #include <tafoni/fluid/concepts.hpp>
+#include <tafoni/weathering/hydraulic_erosion.hpp>
 
 #include <cstddef>
 
@@ -38,7 +39,15 @@ struct boundary {
     }
 };
 
-static_assert(particle_fluid<fluid> && fluid_boundary<boundary>);
+/// Takes a millimetre of rock in ten seconds, whatever flows. Copyable by construction only.
+struct exchange {
+    explicit exchange(int) {}
+    exchange(exchange const&) = default;
+    exchange& operator=(exchange const&) = delete;
+    [[nodiscard]] double rate(wash_point const&) const { return 1e-4; }
+};
+
+static_assert(particle_fluid<fluid> && fluid_boundary<boundary> && exchange_rule<exchange>);
 
 }  // namespace tafoni::archetypes
 

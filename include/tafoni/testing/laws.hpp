@@ -5,6 +5,7 @@
 
 #include <tafoni/testing/bubble_laws.hpp>
 #include <tafoni/testing/curvature_laws.hpp>
+#include <tafoni/testing/exchange_laws.hpp>
 #include <tafoni/testing/fluid_laws.hpp>
 #include <tafoni/testing/mesh_laws.hpp>
 #include <tafoni/testing/policy_laws.hpp>

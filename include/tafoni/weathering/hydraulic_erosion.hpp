@@ -109,11 +109,21 @@ template <class P>
 inline constexpr bool is_curvature_erosion = false;
 template <class E>
 inline constexpr bool is_curvature_erosion<curvature_erosion<E>> = true;
+
+/// The rule to ask about: `curvature_erosion` needs none.
+template <class P>
+struct rule_of {
+    using type = P;
+};
+template <class E>
+struct rule_of<curvature_erosion<E>> {
+    using type = partheniades_erosion;
+};
 }  // namespace detail
 
 /// What `hydraulic_run` runs: an exchange rule (chapter 8) or `curvature_erosion` (chapter 9).
 template <class P>
-concept hydraulic_process = exchange_rule<P> || detail::is_curvature_erosion<P>;
+concept hydraulic_process = exchange_rule<typename detail::rule_of<P>::type>;
 
 /// How far vertices may go, and where the mesh gets finer.
 struct hydraulic_options {

@@ -39,7 +39,7 @@ namespace tafoni {
 /// mesh, fluid, process and options only, never on threads.
 template <class Process, class Fluid>
 class hydraulic_run {
-    static_assert(hydraulic_process<Process>);
+    static_assert(exchange_rule<typename detail::rule_of<Process>::type>);  // `hydraulic_process`, one line nearer to the reason
     static_assert(particle_fluid<Fluid>);
 
 public:

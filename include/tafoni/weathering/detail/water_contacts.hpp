@@ -52,7 +52,7 @@ public:
                 std::int64_t load = 0;
                 for_each_facing_contact(walls, p, reach, [&](boundary_contact const& c) {
                     std::int64_t taken = 0;
-                    if constexpr (exchange_rule<Process>) {
+                    if constexpr (!is_curvature_erosion<Process>) {
                         if (out.contacts.size() == before) load = loads.all()[i].units;
                         taken = exchanged(process, {.position = p, .velocity = fluid.velocity(i), .normal = c.normal,
                                                     .distance = c.distance, .reach = reach}, unit, dt);

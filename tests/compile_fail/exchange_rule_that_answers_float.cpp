@@ -1,0 +1,18 @@
+// expect: exchange_rule
+// expect: r\.rate\(at\)
+// expect: double
+#include <tafoni/fluid/rain_particles.hpp>
+#include <tafoni/weathering/hydraulic_run.hpp>
+
+struct mine {
+#ifdef TAFONI_TEST_MISTAKE
+    float rate(tafoni::wash_point const&) const { return 1; }
+#else
+    double rate(tafoni::wash_point const&) const { return 1; }
+#endif
+};
+
+void washed(tafoni::triangle_surface const& s) {
+    tafoni::hydraulic_run run(s, tafoni::rain_particles({}, {}, {}), mine{});
+    run.run(1);
+}
