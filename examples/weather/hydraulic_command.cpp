@@ -43,7 +43,7 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--durability", a.durability, "FIELD that divides the erosion of either model")->capture_default_str();
     c->add_option("--step", a.step, "no vertex moves farther in an iteration than the mean edge over this; default: 10, with sph, whose steps are short, 100")->check(between(1.0, 1e100));
     c->add_option("--refine", a.refine, "edges under water longer than this are split; 0: none")->check(between(0.0, 1e100))->capture_default_str();
-    c->add_option("--check-every", a.check_every, "iterations between looks at the walls around moving vertices, so that they do not cut each other; 20 costs about a third of the time; 0: never")->capture_default_str();
+    c->add_option("--check-every", a.check_every, "iterations between looks at the walls around moving vertices, so that they do not cut each other; 20 adds about a quarter to the time; 0: never")->capture_default_str();
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
     c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/hydraulic.checkpoint");

@@ -28,7 +28,7 @@ cut_counts cut_counts::of(triangle_surface const& before, triangle_surface const
 
 void cut_counts::tell(std::string const& remedy) const {
     if (!counted) {
-        note("more than " + std::to_string(most_faces) + " faces: whether they cut each other was not looked at");
+        note("whether triangles cut each other was not looked at: there are more than " + std::to_string(most_faces));
     } else if (after > before) {
         note(std::to_string(after) + " pairs of triangles cut each other" + (before > 0 ? ", " + std::to_string(before) + " in INPUT" : "") +
              "; " + remedy);

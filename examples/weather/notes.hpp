@@ -28,7 +28,7 @@ private:
 
 /// How many pairs of triangles cut each other.
 struct cut_counts {
-    static constexpr std::size_t most_faces = 2000000;  ///< of larger surfaces pairs are not counted
+    static constexpr std::size_t most_faces = 500000;  ///< of larger surfaces pairs are not counted
 
     std::size_t before = 0;
     std::size_t after = 0;
