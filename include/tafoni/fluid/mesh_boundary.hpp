@@ -80,9 +80,12 @@ public:
         }
     }
 
+    /// The farthest that contacts are looked for, length unit.
     [[nodiscard]] double reach() const noexcept { return reach_; }
+    /// The mesh as it was viewed last.
     [[nodiscard]] std::span<vec3 const> positions() const noexcept { return positions_; }
     [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
+    /// Memory held. O(1).
     [[nodiscard]] std::size_t bytes() const noexcept {
         return rooms_.bytes() + discs_.capacity() * sizeof(detail::face_disc) + (last_.capacity() + base_.capacity()) * sizeof(vec3) +
                faces_then_.capacity() * sizeof(std::array<std::uint32_t, 3>) + moved_.capacity();

@@ -78,6 +78,7 @@ public:
         next_id_ = drops_.size();
     }
 
+    /// Always as many as the options say; by number i, which a drop keeps until another takes its place under a new id.
     [[nodiscard]] std::size_t particle_count() const noexcept { return drops_.size(); }
     [[nodiscard]] vec3 position(std::size_t i) const noexcept { return drops_[i].position; }
     [[nodiscard]] vec3 velocity(std::size_t i) const noexcept { return drops_[i].velocity; }

@@ -57,6 +57,7 @@ enum class wrinkle_formula : std::uint8_t {
     as_printed   ///< sigma = r^2 / 3 and lengths in the model's unit
 };
 
+/// What holds for all wrinkles of a pattern.
 struct wrinkle_options {
     double divisor = 10;             ///< a of equation 12.4, > 0
     std::uint32_t subdivisions = 2;  ///< 0 to 6: within r of the path, then r / 3 [thesis, 12.6], r / 9, ...
@@ -145,6 +146,7 @@ public:
 
     /// Displacement along the normal per refined vertex, length unit of the base: factor / a.
     [[nodiscard]] std::span<double const> displacement() const noexcept { return factor_; }
+    /// Those of the refined base, which every surface that wears the pattern gets.
     [[nodiscard]] std::span<std::array<std::uint32_t, 3> const> triangles() const noexcept { return triangles_; }
     /// Ends of the edge that refined vertex `base_vertices() + k` lies in the middle of.
     [[nodiscard]] std::span<std::array<std::uint32_t, 2> const> midpoints() const noexcept { return origins_.midpoints; }
