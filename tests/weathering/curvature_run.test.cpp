@@ -518,3 +518,43 @@ TEST_CASE("thin fingers survive 400 iterations with a power of 5", "[slow][paper
     CHECK(share_of_reach(blunt.surface()) < 0.8);
     CHECK(blunt.report().edges_collapsed > 1000);
 }
+
+TEST_CASE("a direction is told of the Laplacian in the user's unit, and as printed goes by it") {
+    struct spy {
+        double* worst;
+        triangle_surface const* mesh;
+        vertex_rings const* rings;
+        vec3 direction(wear_point const& at) const {
+            std::size_t v = 0;
+            for (std::size_t w = 0; w < mesh->positions.size(); ++w) {
+                if (squared_length(mesh->positions[w] - at.position) < squared_length(mesh->positions[v] - at.position)) v = w;
+            }
+            vec3 mean{0, 0, 0};
+            for (std::uint32_t const w : rings->neighbors(v)) mean += mesh->positions[w] - mesh->positions[v];
+            mean /= static_cast<double>(rings->neighbors(v).size());
+            *worst = std::max(*worst, length(at.laplacian - mean) / length(mean));
+            return normalized(at.laplacian);
+        }
+    };
+    for (double const unit : {1.0, 1000.0, 0.001}) {
+        triangle_surface s = sphere(2).mesh;
+        for (vec3& p : s.positions) p = unit * p;
+        vertex_rings const rings(s.positions.size(), s.triangles);
+        double worst = -1;
+        curvature_run<curvature_weathering<tensor_fit, spy>> seen(s, {.direction = {&worst, &s, &rings}});
+        seen.run(1);
+        CHECK(worst >= 0);
+        CHECK(worst < 1e-9);
+        curvature_run unit_long(s, curvature_weathering{}, {.topology = mesh_topology::keep});
+        curvature_run printed(s, curvature_weathering{.direction = laplacian_direction{.scale = laplacian_length::as_printed}},
+                              {.topology = mesh_topology::keep});
+        unit_long.run(1);
+        printed.run(1);
+        for (std::size_t v = 0; v < s.positions.size(); ++v) {
+            vec3 mean{0, 0, 0};
+            for (std::uint32_t const w : rings.neighbors(v)) mean += s.positions[w] - s.positions[v];
+            mean /= static_cast<double>(rings.neighbors(v).size());
+            CHECK(printed.wear()[v] == Approx(length(mean) * unit_long.wear()[v]).epsilon(1e-9));
+        }
+    }
+}

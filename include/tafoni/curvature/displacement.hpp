@@ -14,7 +14,7 @@ namespace tafoni {
 
 /// What a direction policy knows of a vertex.
 struct wear_point {
-    vec3 position{0, 0, 0};
+    vec3 position{0, 0, 0};  ///< in the user's frame, as the Laplacian
     /// Mean of the neighbours less the vertex [thesis, equation 9.2], length unit. Where curvature weathers an open mesh:
     /// at its border of the neighbours along it, so that its outline stays.
     vec3 laplacian{0, 0, 0};
@@ -34,7 +34,8 @@ concept direction_policy = std::copy_constructible<P> && requires(P const& p, we
 /// How long the Laplacian is taken.
 enum class laplacian_length {
     unit,       ///< of length 1, so that a displacement is as long as equation 9.5 says
-    as_printed  ///< as equation 9.4 is printed: times the Laplacian itself, a length squared in all
+    as_printed  ///< as equation 9.4 is printed: times the Laplacian itself, a length squared in all, so that the result
+                ///< depends on the model's unit
 };
 
 /// Towards the mean of the neighbours: rounds, and evens out the triangles [thesis, 9.2]. Models `direction_policy`.

@@ -65,7 +65,7 @@ public:
                               .curvature = most > 0 ? h / most : 0.0};
                 if constexpr (normals) at.normal = normal_[v];
                 for (std::uint32_t const w : around) at.laplacian += s.positions[w] - p;
-                double const share = 1 / static_cast<double>(around.size());
+                double const share = scale.length_to_user(1 / static_cast<double>(around.size()));
                 at.laplacian = vec3{at.laplacian[0] * share, at.laplacian[1] * share, at.laplacian[2] * share};
                 double const hard = std::max(process.durability(at.position), Process::least_durability);
                 double const d = std::min((l.power == 1 ? h : elementary::pow(h, l.power)) / hard, 1.0) * l.reach;
