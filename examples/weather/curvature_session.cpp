@@ -188,7 +188,7 @@ void curvature_session::write_results(Run& run) {
     if (!checkpoint.empty()) write_checkpoint(run, checkpoint);
     if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
     // Last, so that it names only what is there.
-    if (a_.snapshots > 0) series_.finish(out_);
+    if (a_.snapshots > 0 && out_.writes("vtp")) series_.finish(out_);
     progress_.show("write", 1);
 }
 

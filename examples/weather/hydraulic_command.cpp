@@ -46,6 +46,7 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
     c->add_option("--check-every", a.check_every, "iterations between looks at the walls around moving vertices, so that they do not cut each other; 20 adds about a quarter to the time; 0: never")->capture_default_str();
     add_mesh_run(*c, a);
     c->add_option("--snapshots", a.snapshots, "write a snapshot every so many iterations; 0: none")->capture_default_str();
+    c->add_flag("--particles-out", a.particles_out, "write the particles too, as points with velocities vx, vy, vz: water.vtp, and snapshots/water_%08d.vtp with every snapshot");
     c->add_option("--checkpoint", a.checkpoint, "file to save the state to, with every snapshot and at the end; default: none, after Ctrl-C DIR/hydraulic.checkpoint");
     c->add_option("--resume", a.resume, "checkpoint to go on from");
     return c;

@@ -45,6 +45,7 @@ struct hydraulic_arguments {
     std::uint64_t seed = 1;
     std::size_t threads = 1;
     std::uint64_t snapshots = 0;
+    bool particles_out = false;       ///< the water as points beside every surface
     std::string checkpoint;
     std::string resume;
     std::vector<std::string> formats{"vtp", "obj"};

@@ -8,6 +8,7 @@
 #include <tafoni/fluid/rain_particles.hpp>
 #include <tafoni/fluid/sph.hpp>
 #include <tafoni/io/hydraulic_channels.hpp>
+#include <tafoni/io/write_vtp.hpp>
 #include <tafoni/version.hpp>
 #include <tafoni/weathering/hydraulic_run.hpp>
 
@@ -272,6 +273,7 @@ void hydraulic_session::run_with(Run& run) {
     if (a_.snapshots > 0) made_folder((folder / "snapshots").string());
     std::uint64_t const begin = run.report().iterations;
     out_.remove_old("hydraulic", [&](std::uint64_t n) { return !a_.resume.empty() && n <= begin; });
+    out_.remove_old("water", [&](std::uint64_t n) { return a_.particles_out && !a_.resume.empty() && n <= begin; });
     stopwatch watch;
     weather(run);
     seconds_["weather"] = watch.lap() - aside_;
@@ -279,12 +281,14 @@ void hydraulic_session::run_with(Run& run) {
     add_history(run);
     out_.write("weathered", surface(run));
     history_.write(out_);
+    if (a_.particles_out) write_water(run, "water");
     std::string checkpoint = a_.checkpoint;
     if (checkpoint.empty() && stopped_) checkpoint = (out_.folder() / "hydraulic.checkpoint").string();
     if (!checkpoint.empty()) write_checkpoint(run, checkpoint);
     if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
     // Last, so that it names only what is there.
-    if (a_.snapshots > 0) series_.finish(out_);
+    if (a_.snapshots > 0 && out_.writes("vtp")) series_.finish(out_);
+    if (a_.snapshots > 0 && a_.particles_out) water_series_.finish(out_);
     progress_.show("write", 1);
     seconds_["write"] = watch.lap() + aside_;
     cut_counts const cuts = cut_counts::of(input_.surface, run.surface());
@@ -304,6 +308,7 @@ void hydraulic_session::weather(Run& run) {
     if (!a_.resume.empty()) {
         history_.recall(out_, done);
         series_.recall(out_, a_.snapshots, done);
+        if (a_.particles_out) water_series_.recall(out_, a_.snapshots, done);
     }
     run_context const context{.on_progress = [&](progress_event const&) {
         std::uint64_t const n = run.report().iterations;
@@ -318,6 +323,7 @@ void hydraulic_session::weather(Run& run) {
         }
         if (a_.snapshots > 0 && done % a_.snapshots == 0) {
             series_.write(out_, done, surface(run));
+            if (a_.particles_out) write_water(run, water_series_.add(done));
             history_.write(out_);
             if (!a_.checkpoint.empty()) write_checkpoint(run, a_.checkpoint);
         }
@@ -343,6 +349,19 @@ void hydraulic_session::write_checkpoint(Run const& run, std::string const& path
 template <class Run>
 surface_mesh hydraulic_session::surface(Run const& run) const {
     return mesh_with(run.surface(), channels_of(run, estimator_, threads_).vertex_channels);
+}
+
+template <class Run>
+void hydraulic_session::write_water(Run const& run, std::string const& name) const {
+    auto const& water = run.fluid();
+    polyline_set points;
+    std::vector<mesh_channel> channels{vertex_numbers("vx", {}), vertex_numbers("vy", {}), vertex_numbers("vz", {})};
+    for (std::size_t i = 0; i < water.particle_count(); ++i) {
+        points.positions.push_back(water.position(i));
+        vec3 const v = water.velocity(i);
+        for (int d = 0; d < 3; ++d) channels[static_cast<std::size_t>(d)].values.push_back(v[d]);
+    }
+    write_vtp(out_.folder() / (name + ".vtp"), points, channels);
 }
 
 template <class Run>

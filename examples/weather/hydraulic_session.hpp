@@ -65,6 +65,9 @@ private:
     [[nodiscard]] surface_mesh surface(Run const& run) const;
     template <class Run>
     void write_checkpoint(Run const& run, std::string const& path) const;
+    /// The particles as points with their velocities.
+    template <class Run>
+    void write_water(Run const& run, std::string const& name) const;
     template <class Run>
     void add_history(Run& run);
     template <class Run>
@@ -80,6 +83,7 @@ private:
     nlohmann::ordered_json seconds_;
     double aside_ = 0;  ///< seconds within the run that were not the run's
     snapshot_series series_{"hydraulic"};
+    snapshot_series water_series_{"water"};
     history_table history_{"iterations,time,vertices,contacts,eroded,deposited,carried,left"};
     unused_options unused_;
     bool stopped_ = false;

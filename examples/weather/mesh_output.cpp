@@ -80,13 +80,17 @@ void snapshot_series::recall(output_folder const& out, std::uint64_t every, std:
 }
 
 void snapshot_series::write(output_folder const& out, std::uint64_t iteration, surface_mesh const& surface) {
+    out.write(add(iteration), surface);
+}
+
+std::string snapshot_series::add(std::uint64_t iteration) {
     std::string const name = numbered_name((process_ + "_").c_str(), iteration, 8);
-    out.write("snapshots/" + name, surface);
     series_.push_back({.time = static_cast<double>(iteration), .file = name + ".vtp"});
+    return "snapshots/" + name;
 }
 
 void snapshot_series::finish(output_folder const& out) const {
-    if (out.writes("vtp")) write_pvd(out.folder() / "snapshots" / (process_ + ".pvd"), series_);
+    write_pvd(out.folder() / "snapshots" / (process_ + ".pvd"), series_);
 }
 
 void history_table::recall(output_folder const& out, std::uint64_t until) {

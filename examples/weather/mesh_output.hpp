@@ -36,7 +36,9 @@ public:
     /// Those that an interrupted run left, before iteration `until`.
     void recall(output_folder const& out, std::uint64_t every, std::uint64_t until);
     void write(output_folder const& out, std::uint64_t iteration, surface_mesh const& surface);
-    /// snapshots/PROCESS.pvd, where there are .vtp files.
+    /// The same of what is written by others. \returns  its name, without an ending
+    std::string add(std::uint64_t iteration);
+    /// snapshots/PROCESS.pvd.
     void finish(output_folder const& out) const;
 
 private:

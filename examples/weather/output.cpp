@@ -72,7 +72,7 @@ void output_folder::remove_old(std::string const& process, std::function<bool(st
                 if (name == std::string(stem) + e) return true;
             }
         }
-        return name == "links.vtp" || name == "bonds.vtp" || name == "paths.vtp" || name == "report.json";
+        return name == "links.vtp" || name == "bonds.vtp" || name == "paths.vtp" || name == "water.vtp" || name == "report.json";
     });
     collect(folder_ / "snapshots", [&](std::string const& name) {
         return name == process + ".pvd" || (is_numbered(name, process + "_", 8, n) && !keep(n));

@@ -191,7 +191,7 @@ bool wrinkles_session::run() {
     if (checkpoint.empty() && stopped_) checkpoint = (out_.folder() / "wrinkles.checkpoint").string();
     if (!checkpoint.empty()) write_checkpoint(result, checkpoint);
     if (stopped_) std::fprintf(stderr, "stopped; go on with --resume %s\n", checkpoint.c_str());
-    if (a_.snapshots > 0) series_.finish(out_);
+    if (a_.snapshots > 0 && out_.writes("vtp")) series_.finish(out_);
     seconds_["write"] = watch.lap() + aside_;
     cut_counts const cuts = cut_counts::of(input.surface, result);
     seconds_["check"] = watch.lap();

@@ -280,6 +280,32 @@ for cell in 10 160; do
     holds "$(number smooth$cell friction) == 0 && $(number river$cell friction) > 0 && $(number smooth$cell left) > 10 * $(number river$cell left)" smooth$cell
 done
 
+# what would cut itself does not by default; where nobody looks it is counted, and told
+thin_hand="builtin:hand:resolution=16 --iterations 300 --particles 4000 --format obj --progress none"
+# shellcheck disable=SC2086
+{
+    expect 0 sound_hand "$weather" hydraulic $thin_hand -o sound_hand
+    holds "$(number sound_hand after) == 0 && $(number sound_hand largest_wear) > 0" sound_hand
+    expect 0 cut_hand "$weather" hydraulic $thin_hand -o cut_hand --check-every 0
+    holds "$(number cut_hand before) == 0 && $(number cut_hand after) > 0" cut_hand
+    says cut_hand "weather: note: [0-9]* pairs of triangles cut each other; --check-every 20 prevents it"
+    expect 0 cut_rock "$weather" curvature builtin:outcrop:resolution=32 --step 2 --iterations 60 -o cut_rock --format obj --progress none
+    says cut_rock "weather: note: [0-9]* pairs of triangles cut each other; --check-every 10 prevents it"
+}
+# the water as points, with snapshots, across a break as well
+# shellcheck disable=SC2086
+for fluid in rain sph; do
+    drops="builtin:valley:resolution=16 --fluid $fluid --particles 300 --snapshots 10 --particles-out --format obj --progress none"
+    expect 0 drops "$weather" hydraulic $drops -o drops --iterations 30
+    expect 0 half_drops "$weather" hydraulic $drops -o half_drops --iterations 20 --checkpoint half_drops.bin
+    expect 0 all_drops "$weather" hydraulic $drops -o half_drops --iterations 30 --resume half_drops.bin
+    diff -r -x report.json drops half_drops > diff.log || complain "$fluid: a resumed run writes other water"
+    for key in 'Name="vx"' 'Name="vz"' "NumberOfPoints=\"$(sed -n 's/^  "particles": \([0-9]*\),/\1/p' drops/report.json)\""; do grep -aq "$key" drops/water.vtp || complain "$fluid: water.vtp has no $key"; done
+    [ "$(grep -c '<DataSet' drops/snapshots/water.pvd)" = 4 ] || complain "$fluid: the list of water has another length"
+done
+expect 0 no_drops "$weather" hydraulic builtin:valley:resolution=16 --iterations 1 -o drops --format obj --progress none
+[ ! -e drops/water.vtp ] && [ ! -e drops/snapshots/water_00000010.vtp ] || complain "water of an older run is left"
+
 # options without an effect are named on stderr and in the report, and refuse nothing
 unused() { # folder options as in the report
     [ "$(tr -d ' \n' < "$1/report.json" | sed 's/.*"unused":\[\([^]]*\)\].*/\1/')" = "$2" ] || complain "$1: the report does not name $2 as unused"
