@@ -469,6 +469,30 @@ TEMPLATE_TEST_CASE("emitters keep to the spacing and the number, and sinks make 
     CHECK(last > 150);
 }
 
+TEST_CASE("an emitter with more places than particles fills its box evenly, at first and as others leave") {
+    sph<float> f({.box = between(vec3{0, 0, 0}, vec3{20, 20, 4})}, {.keep = between(vec3{-1, -1, -1}, vec3{21, 21, 5})},
+                 {.particles = 400, .spacing = 0.5, .gravity = vec3{0, 0, -4}});
+    std::vector<int> born(32, 0);  // in boxes of 5 x 5 x 2
+    std::uint64_t seen = 0;
+    for (int k = 0; k < 600; ++k) {
+        f.step(open_space{}, inline_executor{});
+        for (std::size_t i = 0; i < f.particle_count(); ++i) {
+            if (f.id(i) < seen) continue;
+            vec3 const p = f.position(i);
+            auto const part = [](double x, double wide, int n) { return std::clamp(static_cast<int>(x / wide), 0, n - 1); };
+            ++born[static_cast<std::size_t>(part(p[0], 5, 4) + 4 * part(p[1], 5, 4) + 16 * part(p[2], 2, 2))];
+            seen = std::max(seen, f.id(i) + 1);
+        }
+        if (k == 0) {
+            REQUIRE(f.particle_count() == 400);
+            for (int const n : born) CHECK(std::abs(n - 400 / 32) <= 6);
+        }
+    }
+    CHECK(seen > 600);  // others did leave
+    double const mean = static_cast<double>(seen) / 32;
+    for (int const n : born) CHECK(std::fabs(n - mean) < 0.5 * mean);
+}
+
 TEST_CASE("threads change no bit of a fluid", "[threads]") {
     triangle_surface const walls_of = tub(14, 60);
     auto const poured = [&](auto const& threads) {

@@ -40,8 +40,8 @@ struct fluid_particle {
 /// d = reach - distance [thesis, equation 8.1 with the erratum], and by -friction v; velocities first, then positions. The
 /// step is courant times the least of h / (c + v), sqrt(h / a) / 2, h^2 / (12 nu), 1 / sqrt(k_s), 1 / k_d and
 /// 1 / friction, at most `largest_step`.
-/// An emitter puts a particle on each place of its lattice that is free as long as there may be more; the sink takes
-/// away what leaves its box. The sums over neighbours run by cell and id in fixed lanes: the state depends on
+/// An emitter puts a particle on each place of its lattice that is free as long as there may be more, on places spread
+/// evenly over its box where not all can have one; the sink takes away what leaves its box. The sums over neighbours run by cell and id in fixed lanes: the state depends on
 /// particles and ids only, not on threads, instruction set or the order in which particles were given.
 /// Models `particle_fluid`.
 template <std::floating_point Scalar>
@@ -251,11 +251,9 @@ private:
             detail::free_places& places = places_[k];
             places.clear();
             for (std::size_t i = 0; i < ids_.size(); ++i) places.occupy(position(i));
-            places.for_each([&](vec3 const& p) {
-                if (ids_.size() >= options_.particles) return false;
+            places.take(options_.particles - ids_.size(), next_id_, [&](vec3 const& p) {
                 make_room(ids_.size() + 1);
                 append(next_id_++, p, emitters_[k].velocity);
-                return true;
             });
         }
     }

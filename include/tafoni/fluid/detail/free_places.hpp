@@ -53,21 +53,36 @@ public:
             for (std::uint32_t b = low[1]; b <= high[1]; ++b) {
                 for (std::uint32_t a = low[0]; a <= high[0]; ++a) {
                     if (squared_length(p - place(a, b, c)) < 0.98 * spacing_ * spacing_) {
-                        taken_[a + static_cast<std::size_t>(n_[0]) * (b + static_cast<std::size_t>(n_[1]) * c)] = 1;
+                        taken_[number(a, b, c)] = 1;
                     }
                 }
             }
         }
     }
 
-    /// Calls `put(place)` for each that is free, x fastest, until it returns false. O(places).
+    /// Calls `put(place)` for free ones, at most `wanted`: for all, x fastest, where there are no more than that, else for places
+    /// spread evenly over the box, in a sequence that goes on from its `first`, so that it is even in time as well. O(places).
     template <class Put>
-    void for_each(Put const& put) const {
-        std::size_t k = 0;
+    void take(std::size_t wanted, std::uint64_t first, Put const& put) {
+        std::size_t left = static_cast<std::size_t>(std::count(taken_.begin(), taken_.end(), static_cast<unsigned char>(0)));
+        // Multiples of the powers of the root of x^4 = x + 1 fill a cube evenly [Roberts 2018].
+        constexpr std::array<std::uint64_t, 3> stride{0xD1B54A32D192ED03ULL, 0xABC98388FB8FAC02ULL, 0x8CB92BA72F3D8DD7ULL};
+        for (std::uint64_t k = first + 1, tries = 0; left > wanted && wanted > 0 && tries < 4 * taken_.size(); ++k, ++tries) {
+            std::array<std::uint32_t, 3> at{};
+            for (std::size_t d = 0; d < 3; ++d) at[d] = static_cast<std::uint32_t>(((k * stride[d] >> 32) * n_[d]) >> 32);
+            unsigned char& taken = taken_[number(at[0], at[1], at[2])];
+            if (taken != 0) continue;
+            taken = 1;
+            put(place(at[0], at[1], at[2]));
+            --wanted;
+            --left;
+        }
         for (std::uint32_t c = 0; c < n_[2]; ++c) {
             for (std::uint32_t b = 0; b < n_[1]; ++b) {
-                for (std::uint32_t a = 0; a < n_[0]; ++a, ++k) {
-                    if (taken_[k] == 0 && !put(place(a, b, c))) return;
+                for (std::uint32_t a = 0; a < n_[0] && wanted > 0; ++a) {
+                    if (taken_[number(a, b, c)] != 0) continue;
+                    put(place(a, b, c));
+                    --wanted;
                 }
             }
         }
@@ -76,6 +91,10 @@ public:
 private:
     [[nodiscard]] vec3 place(std::uint32_t a, std::uint32_t b, std::uint32_t c) const noexcept {
         return vec3{first_[0] + spacing_ * a, first_[1] + spacing_ * b, first_[2] + spacing_ * c};
+    }
+
+    [[nodiscard]] std::size_t number(std::uint32_t a, std::uint32_t b, std::uint32_t c) const noexcept {
+        return a + static_cast<std::size_t>(n_[0]) * (b + static_cast<std::size_t>(n_[1]) * c);
     }
 
     double spacing_;
