@@ -120,8 +120,8 @@ public:
     [[nodiscard]] std::uint64_t id(std::size_t i) const noexcept { return ids_[i]; }
     /// At the start of the last step, over that at rest; 0 for a particle that has not made one.
     [[nodiscard]] double density(std::size_t i) const noexcept { return static_cast<double>(density_[i]); }
-    [[nodiscard]] double reach() const noexcept { return reach_; }
-    [[nodiscard]] double sound_speed() const noexcept { return sound_; }
+    [[nodiscard]] double reach() const noexcept { return reach_; }          ///< length unit
+    [[nodiscard]] double sound_speed() const noexcept { return sound_; }    ///< c, length unit / s
     [[nodiscard]] sph_options const& options() const noexcept { return options_; }
 
     /// One step, or as many as make a frame. O(steps x (particles x neighbours + cells)).
