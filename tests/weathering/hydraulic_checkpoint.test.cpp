@@ -192,3 +192,17 @@ TEST_CASE("C3: when memory runs out at any point of a hydraulic run, whole itera
     holds(partheniades_erosion{.coefficient = 1e-3, .critical = 0.1});
     holds(curvature_erosion<>{.influence = 1});
 }
+
+TEST_CASE("a run that looks around goes on from right after edges were split") {
+    hydraulic_options const both{.refine_length = 0.9, .refine_every = 6, .check_every = 4};
+    triangle_surface const ground = slope(10, 5);
+    hydraulic_run whole(ground, rain(), shear, both);
+    whole.run(6);
+    REQUIRE(whole.report().vertices_added > 0);
+    hydraulic_run resumed(ground, rain(), shear, both);
+    resumed.resume(whole.checkpoint());
+    CHECK(same_state(whole, resumed));
+    whole.run(9);
+    resumed.run(9);
+    CHECK(same_state(whole, resumed));
+}

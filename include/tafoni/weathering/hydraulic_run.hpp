@@ -341,6 +341,8 @@ private:
         books_.due.resize(surface_.positions.size(), 0);
         sediment_.resize(surface_.positions.size(), 0);
         report_.vertices_added += fine.midpoints.size();
+        clear_.clear();  // of the vertices before; `look_around` begins anew
+        given_.clear();
         surface_.triangles = std::move(fine.triangles);  // last: `take_back` does not know the old ones, nor origins
         origins_ = std::move(origins);
         fresh_ = false;
