@@ -213,6 +213,7 @@ TEST_CASE("a turned scene erodes alike, up to its border") {
     for (turned const& turn : {turned{}, askew()}) {
         alike(rough, turn, by_stress);
         alike(rough, turn, by_curvature);
+        alike(rough, turn, partheniades_erosion{.coefficient = 5e-2, .critical = 0});  // more than the ground gives
     }
     alike(half_straight, turned{}, by_stress);
     alike(half_straight, turned{}, by_curvature);
