@@ -149,8 +149,8 @@ struct hydraulic_options {
 struct sediment_ledger {
     double eroded = 0;     ///< taken from the surface
     double deposited = 0;  ///< laid down on it
-    double carried = 0;    ///< by particles, and what vertices still owe or are owed
-    double left = 0;       ///< went away with particles
+    double carried = 0;    ///< by particles, with what vertices still owe or are owed; never below 0
+    double left = 0;       ///< went away with particles, as far as the surface has given it
 };
 
 /// Why a run ended.

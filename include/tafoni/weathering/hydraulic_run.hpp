@@ -118,8 +118,7 @@ public:
         Fluid fluid = fluid_;
         detail::hydraulic_state s = detail::hydraulic_checkpoint_reader(bytes, input_.size(), input_faces_)
                                         .read(fluid, input_hash_, detail::parameter_hash(process_, options_, input_));
-        s.report.ledger = {.eroded = unit_.volume(s.books.eroded), .deposited = unit_.volume(s.books.deposited),
-                           .carried = unit_.volume(s.books.carried()), .left = unit_.volume(s.books.left)};
+        s.report.ledger = s.books.in(unit_);
         s.report.particles = fluid.particle_count();
         fluid_ = std::move(fluid);
         surface_ = std::move(s.surface);
@@ -216,8 +215,7 @@ private:
             book_difference();
             for (std::size_t v = 0; v < next_.size(); ++v) wear_[v] += length(next_[v] - kept_.positions[v]);
         }
-        report_.ledger = {.eroded = unit_.volume(books_.eroded), .deposited = unit_.volume(books_.deposited),
-                          .carried = unit_.volume(books_.carried()), .left = unit_.volume(books_.left)};
+        report_.ledger = books_.in(unit_);
     }
 
     /// Gives a way to the vertices that may move in this iteration.
@@ -293,6 +291,7 @@ private:
             }
             if constexpr (!detail::is_curvature_erosion<Process>) {
                 std::int64_t& load = loads_now_.all()[c.particle].units;
+                for (std::uint32_t const v : t) detail::give_back(moving(), v, books_.due[v], load);
                 // What was not granted before cannot be laid down now.
                 std::int64_t const taken = std::max(c.taken, -load);
                 if (taken == 0) return;

@@ -8,6 +8,7 @@
 #include <tafoni/geometry/vertex_rings.hpp>
 #include <tafoni/weathering/detail/particle_loads.hpp>
 #include <tafoni/weathering/detail/sound_moves.hpp>
+#include <tafoni/weathering/hydraulic_erosion.hpp>
 
 #include <algorithm>
 #include <array>
@@ -59,7 +60,21 @@ struct sediment_books {
         return sum;
     }
     [[nodiscard]] bool balanced() const noexcept { return eroded == deposited + carried() + left; }
+    /// What left with particles before the surface gave it has not left yet, so that nothing is carried below 0.
+    [[nodiscard]] sediment_ledger in(volume_unit const& unit) const noexcept {
+        volume_sum const now = carried();
+        volume_sum const lent = now < 0 ? now : 0;
+        return {.eroded = unit.volume(eroded), .deposited = unit.volume(deposited), .carried = unit.volume(now - lent), .left = unit.volume(left + lent)};
+    }
 };
+
+/// A particle gives back what a vertex owes that other walls hold, as far as it carries that much.
+inline void give_back(moving_surface const& s, std::uint32_t v, std::int64_t& due, std::int64_t& load) noexcept {
+    if (due >= 0 || load <= 0 || s.may_move(v)) return;
+    std::int64_t const back = std::min(load, -due);
+    due += back;
+    load -= back;
+}
 
 /// Who asks for what in an iteration, and what the surface can give.
 ///
@@ -126,8 +141,8 @@ public:
     /// direction the volume changes fastest; no farther than `most` and its `vertex_room`. A move that is not sound is
     /// halved, twice at most, then left. Before vertices move half of what is due goes to the neighbours by area: a
     /// particle wears more than the face below it, and no vertex is dug out alone. Of what then stays due half goes to
-    /// those neighbours that particles asked too, so that what is two edges from the water stays as it is. Books what the surface
-    /// really changed by; adds the way to `wear` and the volume to `sediment`.
+    /// those neighbours that particles asked too, so that what is two edges from the water stays as it is; never to a
+    /// vertex that other walls hold. Books what the surface really changed by; adds the way to `wear` and the volume to `sediment`.
     /// O(vertices + faces at those that owe).
     void operator()(moving_surface const& s, sound_moves& moves, sediment_exchange const& asked, volume_unit const& unit, double most, sediment_books& books,
                     std::span<double> wear, std::span<std::int64_t> sediment) {
@@ -135,7 +150,7 @@ public:
         for (std::size_t v = 0; v < books.due.size(); ++v) {
             if (books.due[v] != 0 && asked.asked(v)) left_.push_back(static_cast<std::uint32_t>(v));
         }
-        pass_on(s, moves, books, [](std::uint32_t) { return true; });
+        pass_on(s, moves, books, [&](std::uint32_t v) { return s.may_move(v); });
         left_.clear();
         for (std::size_t v = 0; v < books.due.size(); ++v) {
             if (books.due[v] == 0) continue;
@@ -165,7 +180,7 @@ public:
             }
             if (books.due[v] != 0) left_.push_back(static_cast<std::uint32_t>(v));
         }
-        pass_on(s, moves, books, [&](std::uint32_t v) { return asked.asked(v); });
+        pass_on(s, moves, books, [&](std::uint32_t v) { return asked.asked(v) && s.may_move(v); });
     }
 
 private:

@@ -43,6 +43,9 @@ struct moving_surface {
     vertex_rings const& rings;
     std::span<double> clear{};  ///< way that each vertex has left, below 0 none; empty: any
     kept_ways kept{};            ///< what border vertices keep
+
+    /// Whether other walls leave the vertex a way.
+    [[nodiscard]] bool may_move(std::size_t v) const noexcept { return clear.empty() || clear[v] > 0; }
 };
 
 /// Knows the triangles of a surface whose vertices move one after the other, and refuses what
