@@ -152,16 +152,3 @@ TEST_CASE("a room lends arrays that do not overlap, takes them back when calls t
     }
     CHECK(moved.idle_bytes() <= 3000 + 50 * 24);
 }
-
-TEST_CASE("a room may be used by several threads at once", "[threads]") {
-    triangle_surface const s = torus_surface(30, 20, 0.2).mesh;
-    vertex_rings const rings(s.positions.size(), s.triangles);
-    estimator_room room;
-    surface_view const view{.positions = s.positions, .triangles = s.triangles, .rings = &rings, .room = &room};
-    std::vector<double> whole(s.positions.size());
-    tensor_fit{}(view, whole, inline_executor{});
-    thread_pool const pool(4);
-    std::vector<std::vector<double>> means(16, std::vector<double>(s.positions.size()));
-    pool.for_blocks(means.size(), 1, [&](std::size_t k, std::size_t) { tensor_fit{}(view, means[k], pool); });
-    for (auto const& m : means) CHECK(same_bits(m, whole));
-}
