@@ -15,7 +15,7 @@ namespace weather {
 struct curvature_arguments {
     std::string input;
     std::string output;
-    std::uint64_t iterations = 100;   ///< in all, those before --resume included
+    std::uint64_t iterations = 50;    ///< in all, those before --resume included
     double power = 1;
     double step = 10;                 ///< no vertex moves farther in an iteration than the mean edge over this
     std::string estimator = "tensor";

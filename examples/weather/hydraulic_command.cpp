@@ -19,7 +19,7 @@ CLI::App* add_hydraulic_command(CLI::App& app, hydraulic_arguments& a) {
         ->check(CLI::IsMember({"partheniades", "curvature"}))->capture_default_str();
     c->add_option("--iterations", a.iterations, "steps of the water, in all, those before --resume included")->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62))->capture_default_str();
     c->add_option("--fluid", a.fluid, "rain: drops that fall and run off; sph: water with pressure")->check(CLI::IsMember(hydraulic_fluids()))->capture_default_str();
-    c->add_option("--particles", a.particles, "of water")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
+    c->add_option("--particles", a.particles, "of water; default: half of the vertices, from 10000 to 100000")->check(CLI::Range(1u, 1u << 24));
     c->add_option("--emitter", a.emitter, "BOX x0,y0,z0,x1,y1,z1 that water starts in; default: above the model");
     c->add_option("--velocity", a.velocity, "x,y,z of new water, length unit / s")->capture_default_str();
     c->add_option("--gravity", a.gravity, "x,y,z, length unit / s^2; default: 10 L downwards");

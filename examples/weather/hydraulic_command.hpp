@@ -17,7 +17,7 @@ struct hydraulic_arguments {
     std::string output;
     std::string model = "partheniades";
     std::string fluid = "rain";
-    std::uint32_t particles = 10000;
+    std::uint32_t particles = 0;     ///< 0: by the vertices
     std::uint64_t iterations = 600;   ///< in all, those before --resume included
     std::string emitter;              ///< x0,y0,z0,x1,y1,z1
     std::string velocity = "0,0,0";

@@ -144,6 +144,7 @@ hydraulic_session::field_set hydraulic_session::make_fields(box3 const& bounds, 
 
 void hydraulic_session::settle() {
     water_settings& w = water_;
+    if (a_.particles == 0) a_.particles = static_cast<std::uint32_t>(std::clamp<std::size_t>(input_.surface.positions.size() / 2, 10000, 100000));
     double const size = input_.size;
     double const edge = input_.mean_edge();
     w.up = up();
@@ -211,8 +212,8 @@ bool hydraulic_session::run() {
     stopwatch watch;
     progress_.context().tick("read", 0);
     input_ = load_surface(a_.input, a_.seed);
-    if (!(input_.size >= 1e-60 && input_.size <= 1e60)) {
-        detail::fail<invalid_input>(errc::out_of_range, a_.input + ": the model is " + text_of(input_.size) + " long; water runs over models of 1e-60 to 1e60 only",
+    if (!(input_.size >= 1e-40 && input_.size <= 1e40)) {
+        detail::fail<invalid_input>(errc::out_of_range, a_.input + ": the model is " + text_of(input_.size) + " long; water runs over models of 1e-40 to 1e40 only",
                                     {.kind = entity::file, .file = a_.input, .value = input_.size});
     }
     progress_.context().tick("read", 1);
@@ -295,10 +296,11 @@ void hydraulic_session::run_with(Run& run) {
     seconds_["check"] = watch.lap();
     write_report(run, cuts);
     hydraulic_report const& r = run.report();
-    std::fprintf(stderr, "%s: %llu iterations, %.4g s of flow, %llu contacts, eroded %.4g, deposited %.4g, carried %.4g, left %.4g\n", a_.output.c_str(),
+    std::fprintf(stderr, "%s: %llu iterations, %.4g s of flow, %llu contacts, eroded %.4g, deposited %.4g, carried %.4g, left %.4g; worn by up to %.3g mean edges\n", a_.output.c_str(),
                  static_cast<unsigned long long>(r.iterations), r.time, static_cast<unsigned long long>(r.contacts), r.ledger.eroded,
-                 r.ledger.deposited, r.ledger.carried, r.ledger.left);
-    if (r.contacts == 0 && r.iterations > 0) note("no particle touched the mesh; what may help: another --emitter, a larger --radius, more --iterations");
+                 r.ledger.deposited, r.ledger.carried, r.ledger.left, run.wear().empty() ? 0.0 : *std::max_element(run.wear().begin(), run.wear().end()) / input_.mean_edge());
+    if (r.contacts == 0 && r.iterations > 0) note("no particle touched the mesh; what may help: another --emitter, a larger --radius, more --iterations, the default --gravity or --lifetime");
+    if (r.contacts > 0 && r.ledger.eroded == 0) note("the water took no rock; what may help: a lower --tau-c, a larger --k");
     cuts.tell(a_.check_every == 0 ? "--check-every 20 prevents it" : "shorter steps (--step " + text_of(3 * water_.step) + ") may help");
 }
 

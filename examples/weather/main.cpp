@@ -15,6 +15,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
 #include <string_view>
 
 namespace {
@@ -47,6 +48,14 @@ int main(int argc, char** argv) {
     CLI::App* const hydraulic_command = weather::add_hydraulic_command(app, hydraulic);
     weather::wrinkles_arguments wrinkles;
     CLI::App* const wrinkles_command = weather::add_wrinkles_command(app, wrinkles);
+    if (argc > 1 && argv[1][0] != '-') {
+        std::string names;
+        for (CLI::App const* c : app.get_subcommands([](CLI::App*) { return true; })) names += (names.empty() ? "" : ", ") + c->get_name();
+        if ((", " + names + ",").find(", " + std::string(argv[1]) + ",") == std::string::npos) {
+            tell("'" + std::string(argv[1]) + "' is none of " + names);
+            return exit_usage;
+        }
+    }
     try {
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
