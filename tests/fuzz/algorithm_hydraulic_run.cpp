@@ -51,6 +51,9 @@ void check_run(Run const& run) {
     for (double const w : run.wear()) require(w >= 0 && std::isfinite(w), "ways are finite");
     for (double const v : run.sediment()) require(std::isfinite(v), "sediment is finite");
     require(run.balanced(), "law 29: the ledger closes");
+    sediment_ledger const l = run.report().ledger;
+    require(l.eroded >= 0 && l.deposited >= 0 && l.left >= 0, "volumes are not below 0");
+    require(l.carried >= 0 || l.left == 0, "what is lent is of what has left first");
     require(run.wear().size() == s.positions.size() && run.flow().size() == s.positions.size(), "numbers per vertex");
 }
 

@@ -277,6 +277,17 @@ struct leaving : gripping {
 };
 }  // namespace
 
+TEST_CASE("looks as rare as can be hold nothing that is far from other walls") {
+    auto const eroded = [](std::uint32_t every) {
+        hydraulic_run run(slab(10, 3.0), both_sides(3.0), partheniades_erosion{.coefficient = 0.001, .critical = 0}, {.check_every = every});
+        return run.run(3).ledger.eroded;
+    };
+    double const usual = eroded(20);
+    CHECK(usual > 0);
+    CHECK(eroded(std::uint32_t{1} << 31) == usual);
+    CHECK(eroded(4294967295U) == usual);
+}
+
 // The slab gives a little and is held then; its water goes, with what the slab was to give.
 TEST_CASE("water that takes rock between near walls never carries less than nothing") {
     double most = 0;

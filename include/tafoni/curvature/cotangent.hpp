@@ -82,7 +82,7 @@ struct faces_cotangents {
 /// small error that refinement does not remove. At the border of an open mesh the mean of the inner
 /// neighbours' values, or 0. Models `curvature_estimator`.
 struct cotangent {
-    /// O(vertices + faces); 64 bytes of scratch memory per vertex, with several threads and 4 per face.
+    /// O(vertices + faces); 64 bytes of scratch memory per vertex, with several threads and 4 per face and thread.
     /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {

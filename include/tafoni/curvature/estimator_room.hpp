@@ -17,7 +17,8 @@ namespace tafoni {
 /// Scratch memory that is lent and comes back, for callers that estimate again and again: fresh pages cost several
 /// threads more than the sums that they hold. Put its address into `surface_view::room`.
 ///
-/// After one use by a shipped estimator it holds up to 64 bytes per vertex, with several threads and 48 per face.
+/// After one use by a shipped estimator it holds up to 64 bytes per vertex, with several threads also 4 per
+/// face for each of them, up to 16.
 /// Several threads may use it at once. Copies start empty.
 class estimator_room {
     static constexpr std::align_val_t line{64};

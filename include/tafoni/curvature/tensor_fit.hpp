@@ -86,7 +86,7 @@ struct face_mean_curvatures {
 /// irregular ones as noisy as every method of one ring: see the table in curvature/README.md. Models
 /// `curvature_estimator`.
 struct tensor_fit {
-    /// O(vertices + faces); 40 bytes of scratch memory per vertex, with several threads and 4 per face.
+    /// O(vertices + faces); 40 bytes of scratch memory per vertex, with several threads and 4 per face and thread.
     /// \throws invalid_input  `attribute_length` for other than one number per vertex, `bad_parameter` for other rings.
     template <executor E>
     void operator()(surface_view const& s, std::span<double> mean, E const& executor) const {

@@ -58,7 +58,7 @@ struct weighted_face_normals {
 };
 
 struct vertex_normals_fn {
-    /// `normals` has one entry per vertex. O(vertices + faces); 4 bytes of scratch memory per face with several threads.
+    /// `normals` has one entry per vertex. O(vertices + faces); 4 bytes of scratch memory per face and thread, with several.
     /// \throws invalid_input  `attribute_length` for other than one normal per vertex, `bad_parameter` for other rings.
     template <executor E = inline_executor>
     void operator()(surface_view const& s, std::span<vec3> normals, E const& executor = {}) const {

@@ -55,8 +55,9 @@ public:
         fill();
     }
 
-    /// Follows vertices that moved and faces that changed. O(vertices + faces); O(cells) more where the faces are
-    /// others or a vertex has gone far.
+    /// Follows vertices that moved and faces that changed; coordinates must be in the constructor's range, which is not
+    /// looked at again. O(vertices + faces); where the faces are others or a vertex has gone far also the cells in the
+    /// boxes of the faces.
     void refit(std::span<vec3 const> positions, std::span<std::array<std::uint32_t, 3> const> triangles) {
         positions_ = positions;
         triangles_ = triangles;

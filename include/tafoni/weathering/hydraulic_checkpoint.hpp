@@ -168,6 +168,12 @@ private:
     [[noreturn]] static void bad(char const* why) { fail<io_error>(errc::bad_syntax, std::string(who) + ": " + why); }
 
     [[nodiscard]] std::int64_t units() { return static_cast<std::int64_t>(in_.get()); }
+    /// What a vertex or a particle may hold.
+    [[nodiscard]] std::int64_t held() {
+        std::int64_t const v = units();
+        if (v > std::int64_t{1} << 61 || v < -(std::int64_t{1} << 61)) bad("a volume is out of range");
+        return v;
+    }
     [[nodiscard]] double positive() {
         double const d = in_.get_real();
         if (d < 0) bad("a length or a time is negative");
@@ -197,7 +203,7 @@ private:
         s.sediment.resize(s.surface.positions.size());
         for (std::int64_t& v : s.sediment) v = units();
         s.books.due.resize(s.surface.positions.size());
-        for (std::int64_t& v : s.books.due) v = units();
+        for (std::int64_t& v : s.books.due) v = held();
         for (volume_sum* v : {&s.books.eroded, &s.books.deposited, &s.books.left}) {
             volume_sum const low = in_.get();
             *v = low + (volume_sum{units()} * (volume_sum{1} << 64));
@@ -206,7 +212,7 @@ private:
         if (loaded > in_.left() / 16) bad("there are fewer bytes than loads");
         for (std::uint64_t k = 0; k < loaded; ++k) {
             std::uint64_t const id = in_.get();
-            s.books.load.all().push_back({id, units()});
+            s.books.load.all().push_back({id, held()});
         }
         if (!s.books.balanced()) bad("the ledger does not balance");
         s.report.iterations = in_.get();

@@ -149,8 +149,9 @@ struct hydraulic_options {
 struct sediment_ledger {
     double eroded = 0;     ///< taken from the surface
     double deposited = 0;  ///< laid down on it
-    double carried = 0;    ///< by particles, with what vertices still owe or are owed; never below 0
-    double left = 0;       ///< went away with particles, as far as the surface has given it
+    double carried = 0;    ///< by particles, with what vertices still owe or are owed; below 0 only where more was laid
+                           ///< down than the surface, whose vertices wait for each other, has given so far
+    double left = 0;       ///< went away with particles, as far as the surface has given it, >= 0
 };
 
 /// Why a run ended.

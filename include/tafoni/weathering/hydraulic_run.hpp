@@ -247,7 +247,7 @@ private:
         for (std::size_t v = 0; v < n; ++v) {
             if (wet_[v] != 0) movers_.push_back(static_cast<std::uint32_t>(v));
         }
-        double const look = detail::most_looks_spared * options_.check_every * most / detail::wall_clearance::share;
+        double const look = detail::most_looks_spared * static_cast<double>(options_.check_every) * most / detail::wall_clearance::share;
         std::erase_if(movers_, [&](std::uint32_t v) { return clear_[v] >= 0; });
         clearance_.find(moving(), movers_, look, clear_, threads);
         for (std::uint32_t const v : movers_) given_[v] = clear_[v];

@@ -139,7 +139,7 @@ public:
         blur_ = static_cast<float>(1e-6 * (std::max({e[0], e[1], e[2]}) + 2 * rim) * inverse_);
     }
 
-    /// After `lay_out`, for discs seen from there. O(faces + cells).
+    /// After `lay_out`, for discs seen from there. O(faces + cells in the boxes of the faces).
     void fill(std::span<vec3 const> positions, std::span<triangle const> triangles, std::span<face_disc const> discs) {
         room_of_.assign(size_[0] * size_[1] * size_[2], 0);
         rooms_.assign(1, {});

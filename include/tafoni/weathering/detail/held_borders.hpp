@@ -80,7 +80,8 @@ public:
             if (holds_[k].axes == 0 && holds_[k].planes == 0) holds_[k].axes = by_axes(k, positions, normal);
         }
     }
-    /// Edges of the input may have been split, by vertices that follow its own. O(vertices + faces).
+    /// Edges of the input may have been split, by vertices that follow its own. O(vertices + faces), and for each border
+    /// edge of the input the square of its parts.
     void adopt(vertex_rings const& rings, std::span<std::array<std::uint32_t, 3> const> triangles, std::size_t vertices) {
         std::vector<std::uint32_t> slot;
         vertices_.clear();

@@ -60,10 +60,10 @@ struct sediment_books {
         return sum;
     }
     [[nodiscard]] bool balanced() const noexcept { return eroded == deposited + carried() + left; }
-    /// What left with particles before the surface gave it has not left yet, so that nothing is carried below 0.
+    /// What left with particles before the surface gave it counts when it is given.
     [[nodiscard]] sediment_ledger in(volume_unit const& unit) const noexcept {
         volume_sum const now = carried();
-        volume_sum const lent = now < 0 ? now : 0;
+        volume_sum const lent = std::clamp<volume_sum>(now, std::min<volume_sum>(-left, 0), 0);
         return {.eroded = unit.volume(eroded), .deposited = unit.volume(deposited), .carried = unit.volume(now - lent), .left = unit.volume(left + lent)};
     }
 };
