@@ -17,7 +17,7 @@ CLI::App* add_wrinkles_command(CLI::App& app, wrinkles_arguments& a) {
     c->add_option("--through", a.through, "x,y,z,x,y,z,...: the same by points; the nearest vertices are taken")->allow_extra_args(false);
     c->add_option("--enlarge", a.enlargements, "v,radius,strength: the surface swells around a vertex, repeatable")->allow_extra_args(false);
     c->add_option("--radius", a.radius, "of the region that a wrinkle bends; default: a fortieth of the longest side, at least the mean edge")->check(between(1e-300, 1e100));
-    c->add_option("--strength", a.strength, "negative carves; default: 1 for a fold, -1 for a groove")->check(between(-1e6, 1e6));
+    c->add_option("--strength", a.strength, "negative carves; default: 1 for a fold, -2 for a groove, whose floor is then a quarter of the radius deep; cracks are narrow: -10 and a small radius")->check(between(-1e6, 1e6));
     c->add_option("--profile", a.profile, "fold: swells beside the line; groove: on it, with a negative strength a crack")->check(CLI::IsMember({"fold", "groove"}))->capture_default_str();
     c->add_option("--times", a.times, "how often it is applied, those before --resume included")->check(CLI::Range(0u, 10000u))->capture_default_str();
     c->add_option("--divisor", a.divisor, "of the displacement (a)")->check(between(1e-6, 1e12))->capture_default_str();

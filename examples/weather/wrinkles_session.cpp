@@ -105,7 +105,7 @@ wrinkles_session::wrinkles_session(wrinkles_arguments const& a)
         unused_.tell("without --path or --through", {{"--radius", a_.radius > 0}, {"--strength", !std::isnan(a_.strength)}, {"--profile", a_.profile != plain.profile},
                                                      {"--as-printed", a_.as_printed}});
     }
-    if (std::isnan(a_.strength)) a_.strength = a_.profile == "groove" ? -1 : 1;
+    if (std::isnan(a_.strength)) a_.strength = a_.profile == "groove" ? -2 : 1;
 }
 
 std::vector<wrinkle> wrinkles_session::wrinkles(mesh_input const& input) const {
@@ -199,7 +199,7 @@ bool wrinkles_session::run() {
     progress_.show("write", 1);
     std::fprintf(stderr, "%s: %zu wrinkles, %zu enlargements, %zu vertices added\n", a_.output.c_str(), lines.size(), a_.enlargements.size(),
                  result.positions.size() - input.surface.positions.size());
-    cuts.tell("a smaller --strength or fewer --times prevent it");
+    cuts.tell("a smaller --strength or --radius, a larger --divisor or fewer --times prevent it");
     return !stopped_;
 }
 
