@@ -50,8 +50,12 @@ int main(int argc, char** argv) {
     CLI::App* const wrinkles_command = weather::add_wrinkles_command(app, wrinkles);
     if (argc > 1 && argv[1][0] != '-') {
         std::string names;
-        for (CLI::App const* c : app.get_subcommands([](CLI::App*) { return true; })) names += (names.empty() ? "" : ", ") + c->get_name();
-        if ((", " + names + ",").find(", " + std::string(argv[1]) + ",") == std::string::npos) {
+        bool known = false;
+        for (CLI::App const* c : app.get_subcommands([](CLI::App*) { return true; })) {
+            names += (names.empty() ? "" : ", ") + c->get_name();
+            known = known || c->get_name() == argv[1];
+        }
+        if (!known) {
             tell("'" + std::string(argv[1]) + "' is none of " + names);
             return exit_usage;
         }

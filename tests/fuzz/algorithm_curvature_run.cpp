@@ -1,5 +1,6 @@
 // Bytes make a mesh, policies and a plan: curvature weathering keeps its numbers, its maps and its checkpoints.
 #include "check_mesh_file.hpp"
+#include "damaged_checkpoint.hpp"
 #include "random_soup.hpp"
 
 #include <tafoni/curvature/bubble_ratio.hpp>
@@ -50,15 +51,7 @@ void weather(triangle_surface const& s, choices& c, Estimator const& estimator, 
             require(same.checkpoint() == run.checkpoint(), "n then m iterations are n + m, also over checkpoints");
         }
     }
-    auto saved = run.checkpoint();
-    auto const intact = saved;
-    for (std::size_t k = c.below(4); k-- > 0;) saved[c.below(saved.size())] ^= std::byte{1} << static_cast<int>(c.below(8));
-    if (c.chance(0.2)) saved.resize(c.below(saved.size()));
-    try {
-        run.resume(saved);
-    } catch (io_error const&) {
-        require(run.checkpoint() == intact, "a refused checkpoint changes nothing");
-    }
+    tafoni_test::resume_damaged(run, c);
 }
 
 }  // namespace

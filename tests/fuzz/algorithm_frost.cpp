@@ -1,5 +1,6 @@
 // Bytes make a network, policies and a plan: the run keeps its ledger, its order and its parts.
 #include "check_mesh_file.hpp"
+#include "damaged_checkpoint.hpp"
 #include "reliability/cases.hpp"
 
 #include <tafoni/graph/surface_walk.hpp>
@@ -168,16 +169,7 @@ void weather(random_network const& n, choices& c, Exposure exposure) {
         }
         require(same.checkpoint() == run.checkpoint(), "law 16: n then m paths are n + m, also over checkpoints");
     }
-    // A damaged checkpoint is refused or is a state; either way nothing else happens.
-    auto saved = run.checkpoint();
-    auto const intact = saved;
-    for (std::size_t k = c.below(4); k-- > 0;) saved[c.below(saved.size())] ^= std::byte{1} << static_cast<int>(c.below(8));
-    if (c.chance(0.2)) saved.resize(c.below(saved.size()));
-    try {
-        run.resume(saved);
-    } catch (io_error const&) {
-        require(run.checkpoint() == intact, "a refused checkpoint changes nothing");
-    }
+    tafoni_test::resume_damaged(run, c);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Bytes make a mesh, water, a rule and a plan: hydraulic erosion keeps its ledger, its numbers and its checkpoints.
 #include "check_mesh_file.hpp"
+#include "damaged_checkpoint.hpp"
 #include "random_soup.hpp"
 
 #include <tafoni/weathering/hydraulic_run.hpp>
@@ -71,15 +72,14 @@ void wash(triangle_surface const& s, choices& c, double edge, Process const& pro
         check_run(run);
         std::uint64_t const first = c.below(n + 1);
         same.run(first);
-        if constexpr (saved_fluid<sliding>) {
-            auto const middle = same.checkpoint();
-            same.resume(middle);
-            require(same.checkpoint() == middle, "a checkpoint comes back as it was");
-        }
+        auto const middle = same.checkpoint();
+        same.resume(middle);
+        require(same.checkpoint() == middle, "a checkpoint comes back as it was");
         same.run(n - first);
         require(same.surface().positions == run.surface().positions && same.sediment() == run.sediment(),
                 "n then m iterations are n + m, also over checkpoints");
     }
+    tafoni_test::resume_damaged(run, c);
 }
 
 }  // namespace

@@ -4,12 +4,16 @@
 
 #include "support/curved_surfaces.hpp"
 
+#include <tafoni/core/executor.hpp>
 #include <tafoni/core/vector.hpp>
+#include <tafoni/fluid/concepts.hpp>
 #include <tafoni/geometry/triangle_surface.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace tafoni_test {
 
@@ -24,6 +28,18 @@ template <class Height>
                [](double, double) { return 0.0; })
         .mesh;
 }
+/// The fluid that the concept asks for, and no more: particles that stay where they are put, whatever their speed.
+struct standing {
+    std::vector<tafoni::vec3> at{};
+    tafoni::vec3 speed{0, 0, 0};
+    std::size_t particle_count() const { return at.size(); }
+    tafoni::vec3 position(std::size_t i) const { return at[i]; }
+    tafoni::vec3 velocity(std::size_t) const { return speed; }
+    double reach() const { return 0.2; }
+    double step(tafoni::fluid_boundary auto const&, tafoni::executor auto const&) { return 0.1; }
+};
+static_assert(tafoni::particle_fluid<standing>);
+
 /// One that falls by `drop` along x.
 [[nodiscard]] inline tafoni::triangle_surface slope(std::uint32_t n, double drop) {
     return parametric(

@@ -16,6 +16,8 @@ bad() { # command name says options...
 expect 2 no_output "$weather" curvature builtin:cube
 expect 2 unknown_option "$weather" hydraulic builtin:cube -o none --unknown 1
 expect 2 bad_builtin "$weather" curvature builtin:moon -o none
+expect 2 bad_process "$weather" erode builtin:cube -o none
+says bad_process "'erode' is none of frost, voxel, curvature, hydraulic, wrinkles"
 says bad_builtin "cube, sphere, bust, hand, canyon, valley, outcrop"
 bad curvature power power --power 0.5
 bad curvature nan_power power --power nan
@@ -331,6 +333,11 @@ small="builtin:bust:resolution=12 --progress none --format obj"
     expect 0 busy "$weather" hydraulic $small -o busy --particles 50 --iterations 5 --fluid sph --viscosity 0.01
     unused busy ""
     grep -q "no effect" busy.log && complain "an option with an effect is said to have none"
+    # drops by the size of the mesh, and rock that is too hard for them
+    expect 0 drops "$weather" hydraulic builtin:sphere:squares=61 -o drops --iterations 0
+    holds "$(number drops particles) == int($(number drops vertices) / 2) && $(number drops particles) > 10000" drops
+    expect 0 hard "$weather" hydraulic $small -o hard --particles 500 --iterations 100 --tau-c 1e9
+    says hard "note: the water took no rock"
     # water that touches nothing, and water without weight
     expect 0 dry "$weather" hydraulic $small -o dry --particles 50 --iterations 20 --radius 1e-6
     says dry "note: no particle touched the mesh.*--emitter.*--radius"

@@ -1,5 +1,6 @@
 // The equations of the thesis's chapters 8 and 9, one by one, where their answer is known.
 #include "support/curved_surfaces.hpp"
+#include "support/water_scenes.hpp"
 
 #include <tafoni/curvature/estimate_curvature.hpp>
 #include <tafoni/curvature/vertex_normals.hpp>
@@ -16,17 +17,6 @@ using namespace tafoni;
 using namespace tafoni_test;
 
 namespace {
-
-/// Water that stands where it is put.
-struct still {
-    std::vector<vec3> at{};
-    vec3 speed{0, 0, 0};
-    std::size_t particle_count() const { return at.size(); }
-    vec3 position(std::size_t i) const { return at[i]; }
-    vec3 velocity(std::size_t) const { return speed; }
-    double reach() const { return 0.2; }
-    double step(fluid_boundary auto const&, executor auto const&) { return 0.1; }
-};
 
 /// 20 x 20 squares of 0.1.
 triangle_surface sheet(vec3 const& along, vec3 const& up, vec3 const& origin, double bend = 0) {
@@ -64,7 +54,7 @@ TEST_CASE("a plane wears evenly by curvature, however it lies") {
         for (vec3 const& along : {vec3{1, 0, 0}, vec3{0.8, 0.1, 0.59}, vec3{0.3, -0.7, 0.2}}) {
             triangle_surface const s = sheet(along, vec3{-0.6, 0.2, 0.7}, origin);
             vec3 const n = normals_of(s)[0];
-            hydraulic_run run(s, still{.at = s.positions}, curvature_erosion<>{.influence = 0.1});
+            hydraulic_run run(s, standing{.at = s.positions}, curvature_erosion<>{.influence = 0.1});
             run.run(1);
             double const most = s.mean_edge_length() / 10;
             vertex_rings const rings(s.positions.size(), s.triangles);
@@ -80,7 +70,7 @@ TEST_CASE("a plane wears evenly by curvature, however it lies") {
 TEST_CASE("a ball wears evenly by curvature, however its triangles lie") {
     for (int const level : {2, 3, 4}) {
         triangle_surface const s = sphere(level).mesh;
-        hydraulic_run run(s, still{.at = s.positions}, curvature_erosion<>{});
+        hydraulic_run run(s, standing{.at = s.positions}, curvature_erosion<>{});
         run.run(1);
         double const most = s.mean_edge_length() / 10;
         range const wear = range_of(run.wear());
@@ -98,7 +88,7 @@ TEST_CASE("curvature is scaled over its range, and over a turn of 0.01 per edge 
         range const r = range_of(h);
         double const width = std::max(r.high - r.low, 0.01 / edge);
         for (double const power : {1.0, 2.0}) {
-            hydraulic_run run(s, still{.at = s.positions}, curvature_erosion<>{.power = power, .influence = 0.1});
+            hydraulic_run run(s, standing{.at = s.positions}, curvature_erosion<>{.power = power, .influence = 0.1});
             run.run(1);
             vertex_rings const rings(s.positions.size(), s.triangles);
             for (std::size_t v = 0; v < s.positions.size(); ++v) {
@@ -119,7 +109,7 @@ TEST_CASE("the power of curvature is that of equation 9.5") {
     std::vector<double> const h = estimate_curvature(s);
     range const r = range_of(h);
     auto const worn = [&](double power) {
-        hydraulic_run run(s, still{.at = s.positions}, curvature_erosion<>{.power = power, .influence = 0.1});
+        hydraulic_run run(s, standing{.at = s.positions}, curvature_erosion<>{.power = power, .influence = 0.1});
         run.run(1);
         return std::vector<double>(run.wear().begin(), run.wear().end());
     };
@@ -138,7 +128,7 @@ TEST_CASE("the wear by one particle falls off with the distance as equation 9.6 
     triangle_surface const s = sheet(vec3{1, 0, 0}, vec3{0, 0, 1}, vec3{0, 0, 0});
     vec3 const drop{1.03, 0.97, 0.11};
     double const influence = 0.35;
-    hydraulic_run run(s, still{.at = {drop}}, curvature_erosion<>{.influence = influence});
+    hydraulic_run run(s, standing{.at = {drop}}, curvature_erosion<>{.influence = influence});
     run.run(1);
     std::size_t wet = 0;
     for (std::size_t v = 0; v < s.positions.size(); ++v) {
@@ -148,7 +138,7 @@ TEST_CASE("the wear by one particle falls off with the distance as equation 9.6 
     }
     CHECK(wet > 20);
     // Of several the nearest counts.
-    hydraulic_run more(s, still{.at = {drop, drop + vec3{0.05, 0, 0.05}, drop + vec3{0, 0, 0.08}}}, curvature_erosion<>{.influence = influence});
+    hydraulic_run more(s, standing{.at = {drop, drop + vec3{0.05, 0, 0.05}, drop + vec3{0, 0, 0.08}}}, curvature_erosion<>{.influence = influence});
     more.run(1);
     for (std::size_t v = 0; v < s.positions.size(); ++v) {
         double const nearest = std::min(length(s.positions[v] - drop), length(s.positions[v] - drop - vec3{0.05, 0, 0.05}));
@@ -158,7 +148,7 @@ TEST_CASE("the wear by one particle falls off with the distance as equation 9.6 
 
 TEST_CASE("what curvature takes is booked at the vertices that moved, and at no others") {
     triangle_surface const s = torus_surface(40, 24, 0.1).mesh;
-    hydraulic_run run(s, still{.at = {s.positions[100], s.positions[500]}}, curvature_erosion<>{.influence = 0.15});
+    hydraulic_run run(s, standing{.at = {s.positions[100], s.positions[500]}}, curvature_erosion<>{.influence = 0.15});
     sediment_ledger const l = run.run(3).ledger;
     std::vector<double> const net = run.sediment();
     double sum = 0;
@@ -198,7 +188,7 @@ TEST_CASE("what falls straight onto the ground does not shear it, what falls asl
     vec3 const along = normalized(vec3{s.positions[21] - s.positions[0]});
     vec3 const over = s.positions[200] + 0.05 * n + 0.02 * along;
     auto const eroded = [&](vec3 const& speed) {
-        hydraulic_run run(s, still{.at = {over}, .speed = speed}, partheniades_erosion{.coefficient = 1e-6, .critical = 1});
+        hydraulic_run run(s, standing{.at = {over}, .speed = speed}, partheniades_erosion{.coefficient = 1e-6, .critical = 1});
         return run.run(1).ledger.eroded;
     };
     CHECK(eroded(-5 * n) == 0);

@@ -24,17 +24,6 @@ rain_particles rain_over(double drop, double gravity = 9.81, std::uint32_t parti
                           {.particles = particles, .radius = 0.3, .gravity = vec3{0, 0, -gravity}, .seed = 3});
 }
 
-/// The fluid that the concept asks for, and no more: particles that stand still on the ground.
-struct standing {
-    std::vector<vec3> at{};
-    vec3 speed{0, 0, 0};
-    std::size_t particle_count() const { return at.size(); }
-    vec3 position(std::size_t i) const { return at[i]; }
-    vec3 velocity(std::size_t) const { return speed; }
-    double reach() const { return 0.2; }
-    double step(fluid_boundary auto const&, executor auto const&) { return 0.1; }
-};
-static_assert(particle_fluid<standing>);
 
 }  // namespace
 
