@@ -32,10 +32,11 @@ template <class Height>
 struct standing {
     std::vector<tafoni::vec3> at{};
     tafoni::vec3 speed{0, 0, 0};
+    double wide = 0.2;
     std::size_t particle_count() const { return at.size(); }
     tafoni::vec3 position(std::size_t i) const { return at[i]; }
     tafoni::vec3 velocity(std::size_t) const { return speed; }
-    double reach() const { return 0.2; }
+    double reach() const { return wide; }
     double step(tafoni::fluid_boundary auto const&, tafoni::executor auto const&) { return 0.1; }
 };
 static_assert(tafoni::particle_fluid<standing>);

@@ -17,17 +17,6 @@ using namespace tafoni_test;
 
 namespace {
 
-/// Water that stands where it is.
-struct standing {
-    std::vector<vec3> at{};
-    double wide = 0.3;
-    std::size_t particle_count() const { return at.size(); }
-    vec3 position(std::size_t i) const { return at[i]; }
-    vec3 velocity(std::size_t) const { return vec3{1, 0.3, 0}; }
-    double reach() const { return wide; }
-    double step(fluid_boundary auto const&, executor auto const&) { return 0.1; }
-};
-
 bool inner(vec3 const& p, double rim) { return std::min({p[0], p[1], 4 - p[0], 4 - p[1]}) > rim; }
 
 /// Squared distance from each vertex to the nearest particle, or infinity beyond `influence`.
@@ -46,7 +35,7 @@ TEST_CASE("a plate thinner than the reach that is wet on one side stays as it is
     double const thick = 0.1;
     triangle_surface const plate = slab(16, thick);  // 4 x 4; the first 289 vertices are the upper side
     auto const wears = [&](double z, auto const& process) {
-        standing water;
+        standing water{.speed = vec3{1, 0.3, 0}, .wide = 0.3};
         for (int i = 0; i < 40; ++i) {
             for (int j = 0; j < 40; ++j) water.at.push_back(vec3{0.1 * i + 0.05, 0.1 * j + 0.05, z});
         }
